@@ -1,0 +1,33 @@
+// One interface for every solver that `compare` measures, and the peers (libccd, FCL) behind it.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "cases.hpp"
+
+// What a solver says about a case. Plain bytes, because it travels through a pipe.
+struct Answer {
+    char outcome[48] = "";
+    // NAN is "does not say": peers give no bracket, and no depth for a pair that they find separated.
+    double lower = NAN, upper = NAN;
+    double depth = NAN;  // signed: negative is minus the distance
+    double normal[3] = {NAN, NAN, NAN};  // from A to B: moving B by depth * normal gives touching contact
+
+    void set_outcome(const char *word) { std::snprintf(outcome, sizeof outcome, "%s", word); }
+};
+
+// A query that is ready to run: shapes, poses, meshes and settings are prepared in the constructor and are not timed.
+class Query {
+public:
+    virtual ~Query() = default;
+    virtual void run(Answer &answer) = 0;
+};
+
+// ccdGJKPenetration and ccdMPRPenetration; depth of overlapping pairs only.
+std::unique_ptr<Query> make_libccd_epa(const Case &c);
+std::unique_ptr<Query> make_libccd_mpr(const Case &c);
+// fcl::collide with contacts (overlap only), and fcl::distance with signed distance, both with FCL's libccd solver.
+std::unique_ptr<Query> make_fcl_libccd(const Case &c);
+std::unique_ptr<Query> make_fcl_signed(const Case &c);

@@ -1,0 +1,115 @@
+//! The bracket: what certifies the lower bound, what certifies the upper, and the rounding of both.
+//!
+//! Everything below is for unit roundoff u, dimension N and R = the largest norm of a computed point.
+//!
+//! # Upper
+//!
+//! Proposition 1 holds for every single direction, so one support value is a proof. For a computed unit normal n and
+//! computed support point p the promise of [`Support`](crate::support::Support) gives
+//! h(n) <= (n.p + e)/|n|, and the dot product and the norm of n are off by at most (2N + 4) u R together. Hence
+//!
+//! ```text
+//! d_Q(A) <= (h + m + r) / h_Q(n),      h = fl(n.p),   m = e + (2N + 4) u R
+//! ```
+//!
+//! # Lower
+//!
+//! Let F be a facet and n *any* unit vector. Every point x of F is a convex combination of the facet's vertices, so
+//! n.x >= min n.v =: e_F. If λ h_Q(n) < e_F then λQ does not meet F. When that holds for all facets, λQ
+//! misses a closed surface that winds around the origin; Q is star-shaped, so λQ stays inside it, and what a closed
+//! surface with vertices in V winds around lies in conv V. So
+//!
+//! ```text
+//! d_Q(conv V) >= min over F of e_F / h_Q(n_F)
+//! ```
+//!
+//! and neither the accuracy of n_F nor the convexity of the surface is used: a bad normal or a wrong visibility decision makes
+//! the bound loose, not false. (Equality holds when n_F is exact, eq. 23.) The computed e_F is off by at most
+//! (2N + 4) u R, and the vertices are off A by at most e, which costs e for a ball and, for
+//! another Q, the factor (1 - m / ρ) with ρ the inradius min e_F of the surface: h_A(u) >= h_V(u) - m |u|
+//! and |u| <= h_V(u) / ρ.
+//!
+//! When the origin is not certainly inside, the bound is minus the norm of the point of conv V nearest to it.
+//!
+//! A ball term r of A is added to both sides (Euclidean Q only; there h(core + rB) = h(core) + r |n|).
+
+use crate::scalar::Real;
+
+/// A bracket of d_Q(A), in units of Q; negative values are minus a Euclidean distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bracket<T> {
+    /// d is not less.
+    pub lower: T,
+    /// d is not more.
+    pub upper: T,
+}
+
+/// When a bracket is narrow enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance<T> {
+    /// Width, in units of Q.
+    pub absolute: T,
+    /// Width as a share of the larger end's size.
+    pub relative: T,
+}
+
+impl<T: Real> Tolerance<T> {
+    /// Is the bracket narrow enough?
+    #[inline]
+    pub fn met(&self, b: &Bracket<T>) -> bool {
+        b.upper - b.lower <= self.absolute.at_least(self.relative * b.upper.abs().at_most(b.lower.abs()))
+    }
+}
+
+/// Turns lengths measured on the core of A into bounds on d_Q(A).
+#[derive(Clone, Copy)]
+pub struct Bounds<T> {
+    /// Error of the support function, e.
+    pub support_error: T,
+    /// Ball term of A, r (Euclidean Q only).
+    pub radius: T,
+    /// N, for the rounding of a dot product.
+    pub dimension: usize,
+    /// A's support function does not know its extent: its error is estimated from R.
+    pub unknown_extent: bool,
+}
+
+impl<T: Real> Bounds<T> {
+    /// m: how far a computed height n.p can be from the true one. `reach` is R.
+    #[inline]
+    pub fn margin(&self, reach: T) -> T {
+        let n = self.dimension;
+        let operations = if self.unknown_extent { 18 * n + 4 } else { 2 * n + 4 };
+        self.support_error + T::count(operations) * T::ROUNDOFF * reach
+    }
+
+    /// A bound rounded away from the bracket, after a division by h_Q.
+    #[inline]
+    fn outward(value: T, up: bool) -> T {
+        let slack = value.abs() * (T::count(8) * T::ROUNDOFF);
+        if up { value + slack } else { value - slack }
+    }
+
+    /// Upper bound from a support value of the core along a unit normal where Q has value `gauge` >= 0, itself off by at
+    /// most `gauge_error`.
+    #[inline]
+    pub fn upper(&self, height: T, margin: T, gauge: T, gauge_error: T) -> T {
+        let top = height + margin + self.radius;
+        let bottom = if top > T::zero() { gauge - gauge_error } else { gauge + gauge_error };
+        if bottom > T::zero() { Self::outward(top / bottom, true) } else { T::HUGE }
+    }
+
+    /// Lower bound from the offset of a plane that bounds everything on its far side.
+    #[inline]
+    pub fn lower(&self, offset: T, margin: T, gauge: T, gauge_error: T) -> T {
+        let top = offset - margin + self.radius;
+        let bottom = if top > T::zero() { gauge + gauge_error } else { gauge - gauge_error };
+        if bottom > T::zero() {
+            Self::outward(top / bottom, false)
+        } else if top > T::zero() {
+            T::HUGE
+        } else {
+            -T::HUGE
+        }
+    }
+}

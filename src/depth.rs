@@ -1,0 +1,234 @@
+//! Translational penetration depth of two bodies in space: the query that collision code asks.
+//!
+//! The Minkowski difference M = A - B = { a - b } contains the origin exactly when the bodies overlap. Moving B by x turns M into
+//! M - x, so the shortest x that separates them ends on the boundary of M:
+//!
+//! ```text
+//! depth = min over unit u of h_M(u),     h_M(u) = h_A(u) + h_B(-u)
+//! ```
+//!
+//! which is d_Q(M) for the unit ball Q; where the bodies are apart, the same minimum is minus their distance.
+//! The minimiser u points from A to B.
+
+use crate::answer::{Answer, Outcome};
+use crate::qset::Ball;
+use crate::query::Options;
+use crate::scalar::{Real, Vector, finite, norm};
+use crate::solver::Solver;
+use crate::support::{Failure, Support};
+use nalgebra::SMatrix;
+
+/// A 3 x 3 matrix.
+pub type Matrix3<T> = SMatrix<T, 3, 3>;
+
+/// Why a body cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyError {
+    /// A coordinate is NaN or infinite.
+    NonFinite,
+    /// The matrix is not a rotation: |R^T R - I| > 1e-4 in some entry, or det R < 0.
+    Rotation,
+}
+
+/// A set placed in the world: x -> rotation x + translation.
+#[derive(Clone, Copy)]
+pub struct Body<'a, T: Real> {
+    shape: &'a dyn Support<T, 3>,
+    rotation: Matrix3<T>,
+    translation: Vector<T, 3>,
+}
+
+impl<'a, T: Real> Body<'a, T> {
+    /// Places a shape. The matrix is used as it is given; ball terms stay balls.
+    ///
+    /// # Errors
+    /// [`BodyError`], naming what is wrong.
+    pub fn new(
+        shape: &'a dyn Support<T, 3>,
+        rotation: Matrix3<T>,
+        translation: Vector<T, 3>,
+    ) -> Result<Self, BodyError> {
+        if !rotation.iter().all(|x| x.finite()) || !finite(&translation) {
+            return Err(BodyError::NonFinite);
+        }
+        let off = rotation.transpose() * rotation - Matrix3::identity();
+        let tolerance = T::of(1e-4);
+        if off.iter().any(|x| x.abs() > tolerance) || rotation.determinant() < T::zero() {
+            return Err(BodyError::Rotation);
+        }
+        Ok(Body { shape, rotation, translation })
+    }
+
+    /// Places a shape without turning it.
+    pub fn at(shape: &'a dyn Support<T, 3>, translation: Vector<T, 3>) -> Self {
+        Body { shape, rotation: Matrix3::identity(), translation }
+    }
+
+    fn farthest(&self, u: &Vector<T, 3>, exhaustive: bool) -> Result<Vector<T, 3>, Failure> {
+        let local = self.rotation.tr_mul(u);
+        let point = if exhaustive { self.shape.exhaustive(&local)? } else { self.shape.support(&local)? };
+        Ok(self.rotation * point)
+    }
+
+    /// An upper bound of |x| over the core, in the body's frame: the shape's own, else half the diagonal of the box
+    /// that six support calls draw around it.
+    fn extent(&self) -> Result<T, Failure> {
+        let known = self.shape.extent();
+        if known > T::zero() {
+            return Ok(known);
+        }
+        let mut corner = Vector::<T, 3>::zeros();
+        for i in 0..3 {
+            for sign in [T::one(), -T::one()] {
+                let mut axis = Vector::<T, 3>::zeros();
+                axis[i] = sign;
+                let reach = self.shape.support(&axis)?[i].abs();
+                corner[i] = corner[i].at_least(reach);
+            }
+        }
+        Ok(norm(&corner))
+    }
+}
+
+/// A - B, with B's position taken relative to A's, so that the error does not grow with the distance from the
+/// world's origin.
+struct Pair<'p, 'a, T: Real> {
+    a: &'p Body<'a, T>,
+    b: &'p Body<'a, T>,
+    /// Position of B relative to A.
+    offset: Vector<T, 3>,
+    extent: T,
+    error: T,
+}
+
+impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
+    fn new(a: &'p Body<'a, T>, b: &'p Body<'a, T>) -> Result<Self, Failure> {
+        let offset = b.translation - a.translation;
+        let cores = a.extent()? + b.extent()?;
+        let apart = norm(&offset);
+        // Each shape's own error, doubled for rotations that are off by 1e-4; the two rotations there and back, the
+        // subtraction, and the rounding of `offset` itself: fewer than 16 operations on numbers of this size.
+        let own = (a.shape.error() + b.shape.error()) * T::count(2);
+        let error = own + (cores * T::count(32) + apart * T::count(4)) * T::ROUNDOFF;
+        Ok(Pair { a, b, offset, extent: cores * T::of(1.001) + apart, error })
+    }
+
+    fn sample(&self, u: &Vector<T, 3>, exhaustive: bool) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+        let on_a = self.a.farthest(u, exhaustive)?;
+        let on_b = self.b.farthest(&-u, exhaustive)?;
+        Ok((on_a - on_b - self.offset, on_a))
+    }
+}
+
+impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        Ok(self.sample(u, false)?.0)
+    }
+    fn support_with_witness(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+        self.sample(u, false)
+    }
+    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        Ok(self.sample(u, true)?.0)
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.a.shape.has_shortcuts() || self.b.shape.has_shortcuts()
+    }
+    fn radius(&self) -> T {
+        self.a.shape.radius() + self.b.shape.radius()
+    }
+    fn extent(&self) -> T {
+        self.extent
+    }
+    fn error(&self) -> T {
+        self.error
+    }
+}
+
+/// The penetration of two bodies, or their distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth<T> {
+    /// What was concluded.
+    pub outcome: Outcome,
+    /// The signed depth is not less. Positive: penetration; negative: minus the distance.
+    pub lower: T,
+    /// The signed depth is not more.
+    pub upper: T,
+    /// Unit vector from A to B, which proves `upper`: after moving B by `upper * normal` the bodies do not overlap.
+    pub normal: Vector<T, 3>,
+    /// Witness on A, world frame.
+    pub point_a: Vector<T, 3>,
+    /// Witness on B, world frame. Where converged, `point_a - point_b` is depth * normal up to the tolerance: the points that
+    /// touch after B is moved, or the nearest points of separated bodies.
+    pub point_b: Vector<T, 3>,
+    /// Affine dimension of the cores' difference, as far as it was found out.
+    pub dimension: usize,
+    /// Points added, in expansion and distance iteration.
+    pub iterations: u32,
+    /// Calls of each body's support function.
+    pub support_calls: u32,
+    /// Vertices used.
+    pub vertices: usize,
+    /// Facets used at one time.
+    pub facets: usize,
+    /// Code of a failed callback, else 0.
+    pub failure: i32,
+}
+
+impl<T: Real> Solver<'_, T, 3> {
+    /// Translational penetration depth of two bodies, or their distance, as a bracket with witness points.
+    ///
+    /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact.
+    /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
+    pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
+        let pair = match Pair::new(a, b) {
+            Ok(pair) => pair,
+            Err(failure) => return Depth::failed(failure),
+        };
+        let mut options = *options;
+        if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
+            options.guess = Some(pair.offset);
+        }
+        let answer = self.solve(&pair, &Ball::unit(), &options);
+        Depth::new(&answer, a, b)
+    }
+}
+
+impl<T: Real> Depth<T> {
+    fn new(answer: &Answer<T, 3>, a: &Body<'_, T>, b: &Body<'_, T>) -> Self {
+        let n = answer.direction;
+        let on_a = answer.witness.witness();
+        // b = a - (a - b): relative to A's position, then moved there.
+        let on_b = on_a - answer.witness.point();
+        Depth {
+            outcome: answer.outcome,
+            lower: answer.lower,
+            upper: answer.upper,
+            normal: n,
+            point_a: a.translation + on_a + n * a.shape.radius(),
+            point_b: a.translation + on_b - n * b.shape.radius(),
+            dimension: answer.dimension,
+            iterations: answer.iterations,
+            support_calls: answer.support_calls,
+            vertices: answer.vertices,
+            facets: answer.facets,
+            failure: answer.failure,
+        }
+    }
+
+    fn failed(failure: Failure) -> Self {
+        Depth {
+            outcome: Outcome::SupportFailed,
+            lower: -T::HUGE,
+            upper: T::HUGE,
+            normal: Vector::zeros(),
+            point_a: Vector::zeros(),
+            point_b: Vector::zeros(),
+            dimension: 0,
+            iterations: 0,
+            support_calls: 0,
+            vertices: 0,
+            facets: 0,
+            failure: failure.0,
+        }
+    }
+}

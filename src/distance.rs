@@ -1,0 +1,136 @@
+//! The point of a convex set nearest to the origin: the Gilbert-Johnson-Keerthi iteration [20], with Wolfe's
+//! sub-problem (module [`simplex`](crate::simplex)).
+//!
+//! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
+//! cores are points or segments, and to bound d from below when the origin lies on the boundary.
+
+use crate::polytope::Vertex;
+use crate::scalar::{Real, Vector, norm};
+use crate::simplex::Simplex;
+use crate::support::{Failure, Support};
+
+/// Where the iteration ended.
+pub struct Nearest<T, const N: usize> {
+    /// Its weights stand for a point of the set; the nearest one, as far as the iteration got.
+    pub simplex: Simplex<T, N>,
+    /// Norm of that point.
+    pub distance: T,
+    /// Is the origin in the simplex, as far as rounding can tell?
+    pub inside: bool,
+}
+
+/// What one step of the iteration found.
+pub struct Step<T, const N: usize> {
+    /// Unit direction from the current point towards the origin.
+    pub direction: Vector<T, N>,
+    /// Support value along it: every point x of the set has direction.x <= height, so the distance is >= -height.
+    pub height: T,
+    /// Norm of the current point: the distance is <= this.
+    pub distance: T,
+}
+
+/// A step that reduces the distance by less than this factor of the resolution ends the iteration.
+const STEPS: usize = 128;
+
+/// Walks to the point nearest to the origin, starting with the support point along `first`. `resolution(reach)` is the
+/// length that cannot be told from zero when the points have norm up to `reach`. `watch` sees every step and ends the
+/// walk by returning `true`.
+pub fn nearest<T: Real, const N: usize>(
+    first: &Vector<T, N>,
+    mut support: impl FnMut(&Vector<T, N>) -> Result<Vertex<T, N>, Failure>,
+    mut watch: impl FnMut(&Step<T, N>) -> bool,
+) -> Result<Nearest<T, N>, Failure> {
+    let vertex = support(first)?;
+    let mut reach = norm(&vertex.point);
+    let mut simplex = Simplex::new(vertex);
+    let mut distance = reach;
+    let mut inside = false;
+    for _ in 0..STEPS {
+        let resolution = T::count(8 * N) * T::ROUNDOFF * reach;
+        if !(distance > resolution) || simplex.corners.len() > N {
+            inside = true;
+            break;
+        }
+        let direction = simplex.point() * (-T::one() / distance);
+        let vertex = support(&direction)?;
+        let height = direction.dot(&vertex.point);
+        reach = reach.at_least(norm(&vertex.point));
+        if watch(&Step { direction, height, distance }) || height + distance <= resolution {
+            break;
+        }
+        let before = simplex.clone();
+        if !simplex.push(vertex) {
+            break;
+        }
+        let solved = simplex.minimize(resolution);
+        let now = norm(&simplex.point());
+        if now >= distance {
+            // Rounding has the last word: keep the better point.
+            simplex = before;
+            break;
+        }
+        distance = now;
+        if !solved {
+            break;
+        }
+    }
+    Ok(Nearest { simplex, distance, inside })
+}
+
+/// The convex hull of stored vertices, seen from `origin`.
+pub struct Cloud<'a, T, const N: usize> {
+    pub vertices: &'a [Vertex<T, N>],
+    pub origin: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Cloud<'_, T, N> {
+    /// The point of the hull nearest to `origin`.
+    pub fn nearest(&self, first: &Vector<T, N>) -> Option<Nearest<T, N>> {
+        nearest(first, |u| self.farthest(u), |_| false).ok()
+    }
+
+    fn farthest(&self, u: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
+        let mut best: Option<(T, &Vertex<T, N>)> = None;
+        for vertex in self.vertices {
+            let height = vertex.point.dot(u);
+            if best.is_none_or(|(highest, _)| height > highest) {
+                best = Some((height, vertex));
+            }
+        }
+        let (_, vertex) = best.ok_or(Failure(crate::EMPTY))?;
+        Ok(Vertex { point: vertex.point - self.origin, witness: vertex.witness })
+    }
+}
+
+/// A set with its ball term put back into the support mapping, for a Q that is not a ball.
+pub struct Inflated<'a, T, const N: usize>(pub &'a dyn Support<T, N>);
+
+impl<T: Real, const N: usize> Inflated<'_, T, N> {
+    fn ball(&self, u: &Vector<T, N>) -> Vector<T, N> {
+        u * (self.0.radius() / norm(u))
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.0.support(u)? + self.ball(u))
+    }
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let (p, w) = self.0.support_with_witness(u)?;
+        let ball = self.ball(u);
+        Ok((p + ball, w + ball))
+    }
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.0.exhaustive(u)? + self.ball(u))
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.0.has_shortcuts()
+    }
+    fn extent(&self) -> T {
+        let extent = self.0.extent();
+        if extent > T::zero() { extent + self.0.radius() } else { extent }
+    }
+    fn error(&self) -> T {
+        self.0.error() + T::count(8 + N) * T::ROUNDOFF * self.0.radius()
+    }
+}

@@ -1,0 +1,196 @@
+//! Propositions 3 and 4: which facets a new point eliminates, and which it makes.
+
+use super::{Facet, Index, NONE, Polytope, State, Vertex};
+use crate::scalar::{Real, Vector};
+
+/// What became of an insertion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Insertion {
+    /// The polytope has grown.
+    Done,
+    /// It would not fit; nothing changed.
+    Full,
+    /// The point cannot be added consistently (every facet sees it); nothing changed.
+    Rejected,
+}
+
+/// The visible set: a list through `Facet::link`, with what its horizon will need.
+struct Visible {
+    head: Index,
+    count: usize,
+    horizon: usize,
+}
+
+impl<T: Real, const N: usize> Polytope<'_, T, N> {
+    /// Adds a point that facet `from` sees. A facet is visible when the point is more than `tolerance` above
+    /// its plane; ties count as not visible, which drops nothing but rounding.
+    ///
+    /// `None` means that the bookkeeping contradicts itself: the caller must stop (it never happened; the
+    /// lower bound that was known before stays true).
+    pub fn insert(&mut self, from: Index, vertex: Vertex<T, N>, tolerance: T) -> Option<Insertion> {
+        if self.vertex_count >= self.vertices.len() {
+            return Some(Insertion::Full);
+        }
+        let visible = self.mark_visible(from, &vertex.point, tolerance)?;
+        if visible.horizon > self.free_slots() || visible.count == self.live {
+            self.unmark(visible.head)?;
+            return Some(if visible.count == self.live { Insertion::Rejected } else { Insertion::Full });
+        }
+        let apex = self.add_vertex(vertex)?;
+        self.fresh = NONE;
+        self.make_cone(visible.head, apex)?;
+        self.link_cone(visible.head, visible.count)?;
+        self.recycle(visible.head)?;
+        Some(Insertion::Done)
+    }
+
+    /// Proposition 3 by walking: breadth first over neighbours, starting at a facet known to be visible.
+    fn mark_visible(&mut self, from: Index, point: &Vector<T, N>, tolerance: T) -> Option<Visible> {
+        let first = self.facet_mut(from)?;
+        first.state = State::Visible;
+        first.link = NONE;
+        let mut visible = Visible { head: from, count: 1, horizon: 0 };
+        let (mut tail, mut at) = (from, from);
+        while at != NONE {
+            let neighbors = self.facet(at)?.neighbors;
+            for &next in &neighbors {
+                let neighbor = self.facet_mut(next)?;
+                if neighbor.state == State::Visible {
+                    continue;
+                }
+                if neighbor.normal.dot(point) - neighbor.offset > tolerance {
+                    neighbor.state = State::Visible;
+                    neighbor.link = NONE;
+                    self.facet_mut(tail)?.link = next;
+                    tail = next;
+                    visible.count += 1;
+                } else {
+                    visible.horizon += 1;
+                }
+            }
+            at = self.facet(at)?.link;
+        }
+        Some(visible)
+    }
+
+    fn unmark(&mut self, head: Index) -> Option<()> {
+        let mut at = head;
+        while at != NONE {
+            let facet = self.facet_mut(at)?;
+            facet.state = State::Live;
+            at = facet.link;
+        }
+        Some(())
+    }
+
+    /// Proposition 4: a new facet over every ridge between a visible facet and one that is not. The visible
+    /// facet's link across that ridge is turned to the new facet, for [`link_cone`](Self::link_cone) to find.
+    fn make_cone(&mut self, head: Index, apex: Index) -> Option<()> {
+        let point = self.vertices.get(usize::from(apex))?.point;
+        let mut at = head;
+        while at != NONE {
+            let eliminated = *self.facet(at)?;
+            let above = eliminated.normal.dot(&point) - eliminated.offset;
+            for i in 0..N {
+                let beyond = eliminated.neighbors[i];
+                let outside = self.facet(beyond)?;
+                if outside.state != State::Live {
+                    continue;
+                }
+                let below = (outside.normal.dot(&point) - outside.offset).at_most(T::zero());
+                let normal = Self::join(above, below, &eliminated.normal, &outside.normal);
+                let back = Self::slot_across(outside, &eliminated, i)?;
+
+                let mut vertices = eliminated.vertices;
+                vertices[i] = apex;
+                let mut neighbors = [NONE; N];
+                neighbors[i] = beyond;
+                let (normal, offset) = self.plane(&vertices, normal)?;
+                let facet = self.take_slot()?;
+                let link = core::mem::replace(&mut self.fresh, facet);
+                let key = T::zero();
+                *self.facet_mut(facet)? = Facet { normal, offset, key, vertices, neighbors, link, state: State::Fresh };
+                *self.facet_mut(beyond)?.neighbors.get_mut(back)? = facet;
+                *self.facet_mut(at)?.neighbors.get_mut(i)? = facet;
+            }
+            at = self.facet(at)?.link;
+        }
+        Some(())
+    }
+
+    /// Joins the new facets with each other. The neighbour of a new facet across (sub-ridge S, apex) is found
+    /// by turning around S through the visible patch, from the facet it replaced to the next horizon ridge.
+    fn link_cone(&mut self, head: Index, visible: usize) -> Option<()> {
+        let mut at = head;
+        while at != NONE {
+            let eliminated = *self.facet(at)?;
+            for i in 0..N {
+                let made = eliminated.neighbors[i];
+                if self.facet(made)?.state != State::Fresh {
+                    continue;
+                }
+                for j in 0..N {
+                    if j == i || *self.facet(made)?.neighbors.get(j)? != NONE {
+                        continue;
+                    }
+                    let (other, slot) = self.turn(at, &eliminated, i, j, visible)?;
+                    *self.facet_mut(made)?.neighbors.get_mut(j)? = other;
+                    *self.facet_mut(other)?.neighbors.get_mut(slot)? = made;
+                }
+            }
+            at = eliminated.link;
+        }
+        Some(())
+    }
+
+    /// Turns around the sub-ridge of `start` without its vertices i and j, away from i's ridge, until a new facet is
+    /// met; returns it and its slot opposite the sub-ridge. At most one step per visible facet.
+    fn turn(&self, start: Index, first: &Facet<T, N>, i: usize, j: usize, visible: usize) -> Option<(Index, usize)> {
+        let mut facet = *first;
+        let mut at = start;
+        let mut kept = *facet.vertices.get(i)?; // the vertex that the next facet shares besides S
+        let mut cross = j; // the slot whose ridge is crossed
+        for _ in 0..=visible {
+            let next = *facet.neighbors.get(cross)?;
+            let neighbor = self.facet(next)?;
+            if neighbor.state == State::Fresh {
+                return Some((next, neighbor.slot(kept)?));
+            }
+            debug_assert!(next != at);
+            let entered = Self::slot_across(neighbor, &facet, cross)?;
+            cross = neighbor.slot(kept)?;
+            kept = *neighbor.vertices.get(entered)?;
+            facet = *neighbor;
+            at = next;
+        }
+        None
+    }
+
+    /// The slot of `facet` opposite the ridge that it shares with `other` across `other`'s slot `across`: that of the one
+    /// vertex which is not on the ridge.
+    fn slot_across(facet: &Facet<T, N>, other: &Facet<T, N>, across: usize) -> Option<usize> {
+        let off = |v: Index| other.vertices.iter().enumerate().all(|(i, &w)| i == across || w != v);
+        facet.vertices.iter().position(|&v| off(v))
+    }
+
+    /// Puts the visible facets on the free list and the fresh ones into service.
+    fn recycle(&mut self, head: Index) -> Option<()> {
+        let mut at = head;
+        while at != NONE {
+            let free = self.free;
+            let facet = self.facet_mut(at)?;
+            let next = core::mem::replace(&mut facet.link, free);
+            facet.state = State::Free;
+            self.free = at;
+            self.live -= 1;
+            at = next;
+        }
+        let mut at = self.fresh;
+        while at != NONE {
+            let facet = self.facet_mut(at)?;
+            facet.state = State::Live;
+            at = facet.link;
+        }
+        Some(())
+    }
+}

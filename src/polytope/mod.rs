@@ -1,0 +1,278 @@
+//! The polytope V^ch of Section IV: vertices, facets, who touches whom, and which facet is lowest. The
+//! bookkeeping, and nothing else: no support function, no Q, no bound.
+//!
+//! Facets are simplices of N vertices. Each stores its unit outward normal and its neighbours, so that the facets
+//! which a new point eliminates (Proposition 3) are found by walking from one that is known, and the
+//! horizon (Proposition 4) is what the walk meets. Dead facets are recycled. Memory is borrowed; resetting
+//! costs nothing.
+//!
+//! # Why the surface stays closed
+//!
+//! A new point p replaces the visible facets, a connected patch found by adjacency, by the cone of p over the
+//! patch's boundary ridges. Neighbours of the new facets are found by turning around each sub-ridge
+//! *through the old patch* ([`insert`]), never by comparing coordinates. So whatever rounding does to the
+//! visibility test, every ridge keeps exactly two facets and the surface stays a closed cycle around the
+//! same points. A wrong decision can cost tightness, never topology, and the lower bound (module `bounds`) needs only
+//! the latter.
+
+use crate::scalar::{Real, Vector, norm};
+
+mod heap;
+mod insert;
+mod plane;
+
+pub use heap::{Entry, Heap};
+pub use insert::Insertion;
+
+/// Position of a vertex or facet in its array. 16 bits: a million-facet polytope would not fit a controller.
+pub type Index = u16;
+
+/// No vertex, no facet.
+pub const NONE: Index = Index::MAX;
+
+/// A vertex of the polytope: a point of A, and the witness that came with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex<T, const N: usize> {
+    /// A point of A.
+    pub point: Vector<T, N>,
+    /// For a difference of two bodies, the point of the first one; elsewhere `point` itself.
+    pub witness: Vector<T, N>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Free,
+    Live,
+    /// Eliminated by the point that is being inserted.
+    Visible,
+    /// Made by the point that is being inserted.
+    Fresh,
+}
+
+/// A facet: the simplex of N vertices, its plane and its neighbours.
+#[derive(Clone, Copy)]
+pub struct Facet<T, const N: usize> {
+    /// Unit outward normal n.
+    pub normal: Vector<T, N>,
+    /// min n.v over the facet's vertices: every point x of the facet has n.x >= offset, whatever the
+    /// error of n (module `bounds`).
+    pub offset: T,
+    /// The facet's distance with respect to Q (eq. 24).
+    pub key: T,
+    pub vertices: [Index; N],
+    /// `neighbors[i]` lies across the ridge opposite `vertices[i]`.
+    neighbors: [Index; N],
+    /// Next in the list this facet is on: free, visible, or fresh.
+    link: Index,
+    state: State,
+}
+
+impl<T: Real, const N: usize> Facet<T, N> {
+    fn is_live(&self) -> bool {
+        self.state == State::Live
+    }
+
+    /// The slot of a vertex.
+    fn slot(&self, vertex: Index) -> Option<usize> {
+        self.vertices.iter().position(|&v| v == vertex)
+    }
+}
+
+/// A convex polytope in borrowed memory.
+pub struct Polytope<'a, T, const N: usize> {
+    vertices: &'a mut [Vertex<T, N>],
+    facets: &'a mut [Facet<T, N>],
+    heap: Heap<'a, T>,
+    vertex_count: usize,
+    /// Facets at this position and above were never used since the last reset.
+    facet_top: usize,
+    free: Index,
+    live: usize,
+    peak: usize,
+    /// Head of the list of facets that the last insertion made.
+    fresh: Index,
+    /// A point inside, to orient a normal that lost its direction.
+    center: Vector<T, N>,
+    /// Largest |v|^2 over the vertices.
+    reach_squared: T,
+    reach: T,
+}
+
+impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
+    pub fn new(vertices: &'a mut [Vertex<T, N>], facets: &'a mut [Facet<T, N>], heap: &'a mut [Entry<T>]) -> Self {
+        Polytope {
+            vertices,
+            facets,
+            heap: Heap::new(heap),
+            vertex_count: 0,
+            facet_top: 0,
+            free: NONE,
+            live: 0,
+            peak: 0,
+            fresh: NONE,
+            center: Vector::zeros(),
+            reach_squared: T::zero(),
+            reach: T::zero(),
+        }
+    }
+
+    /// Forgets everything, in constant time.
+    pub fn reset(&mut self) {
+        self.heap.clear();
+        self.vertex_count = 0;
+        self.facet_top = 0;
+        self.free = NONE;
+        self.live = 0;
+        self.peak = 0;
+        self.fresh = NONE;
+        self.reach_squared = T::zero();
+        self.reach = T::zero();
+    }
+
+    pub fn vertices(&self) -> &[Vertex<T, N>] {
+        self.vertices.get(..self.vertex_count).unwrap_or(&[])
+    }
+
+    /// The most facets alive at one time since the last reset.
+    pub fn peak_facets(&self) -> usize {
+        self.peak
+    }
+
+    /// Largest norm of a vertex.
+    pub fn reach(&self) -> T {
+        self.reach
+    }
+
+    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
+    /// unit n and |v| <= reach, with room for the error of n itself.
+    pub fn resolution(&self) -> T {
+        T::count(8 * N) * T::ROUNDOFF * self.reach
+    }
+
+    pub fn facet(&self, facet: Index) -> Option<&Facet<T, N>> {
+        self.facets.get(usize::from(facet))
+    }
+
+    fn facet_mut(&mut self, facet: Index) -> Option<&mut Facet<T, N>> {
+        self.facets.get_mut(usize::from(facet))
+    }
+
+    /// All live facets.
+    pub fn facets(&self) -> impl Iterator<Item = &Facet<T, N>> {
+        self.facets.iter().take(self.facet_top).filter(|f| f.is_live())
+    }
+
+    /// The vertices of a facet.
+    pub fn corners(&self, facet: &Facet<T, N>) -> Option<[Vertex<T, N>; N]> {
+        let mut corners = [Vertex { point: Vector::zeros(), witness: Vector::zeros() }; N];
+        for i in 0..N {
+            corners[i] = *self.vertices.get(usize::from(facet.vertices[i]))?;
+        }
+        Some(corners)
+    }
+
+    /// Stores a vertex, or nothing when the capacity is used up.
+    pub fn add_vertex(&mut self, vertex: Vertex<T, N>) -> Option<Index> {
+        let index = Index::try_from(self.vertex_count).ok().filter(|&i| i != NONE)?;
+        *self.vertices.get_mut(self.vertex_count)? = vertex;
+        self.vertex_count += 1;
+        let squared = vertex.point.dot(&vertex.point);
+        if squared > self.reach_squared {
+            self.reach_squared = squared;
+            self.reach = norm(&vertex.point);
+        }
+        Some(index)
+    }
+
+    fn take_slot(&mut self) -> Option<Index> {
+        let slot = if self.free != NONE {
+            let slot = self.free;
+            self.free = self.facet(slot)?.link;
+            slot
+        } else {
+            let slot = Index::try_from(self.facet_top).ok().filter(|&i| i != NONE)?;
+            self.facets.get(self.facet_top)?;
+            self.facet_top += 1;
+            slot
+        };
+        self.live += 1;
+        self.peak = self.peak.max(self.live);
+        Some(slot)
+    }
+
+    fn free_slots(&self) -> usize {
+        self.facets.len() - self.live
+    }
+
+    /// Takes the next facet from the list of those that the last operation made.
+    pub fn next_fresh(&mut self) -> Option<Index> {
+        let facet = self.fresh;
+        self.fresh = self.facet(facet)?.link;
+        Some(facet)
+    }
+
+    /// Gives a facet its key; with `queue`, it becomes a candidate for [`pop_lowest`](Self::pop_lowest).
+    pub fn set_key(&mut self, facet: Index, key: T, queue: bool) {
+        if let Some(f) = self.facet_mut(facet) {
+            f.key = key;
+        }
+        if queue {
+            self.heap.push(key, facet, self.facets);
+        }
+    }
+
+    /// The queued live facet with the smallest key (eq. 21). It leaves the queue, not the polytope.
+    pub fn pop_lowest(&mut self) -> Option<(T, Index)> {
+        self.heap.pop(self.facets)
+    }
+
+    /// The simplex of the first N + 1 vertices, given its N + 1 outward unit normals (`normals[i]` belongs to
+    /// the facet opposite vertex i).
+    pub fn make_simplex(&mut self, normals: &[Vector<T, N>]) -> Option<()> {
+        let share = T::one() / T::count(N + 1);
+        self.center = self.vertices.iter().take(N + 1).fold(Vector::zeros(), |sum, v| sum + v.point * share);
+        for (opposite, normal) in normals.iter().enumerate().take(N + 1) {
+            let mut vertices = [NONE; N];
+            let others = (0..=N).filter(|&v| v != opposite);
+            for (slot, v) in vertices.iter_mut().zip(others) {
+                *slot = v as Index;
+            }
+            let facet = self.take_slot()?;
+            // Facet i is stored at slot i, so the neighbour across the ridge opposite vertex v is facet v.
+            let fresh = core::mem::replace(&mut self.fresh, facet);
+            let (normal, offset) = self.plane(&vertices, *normal)?;
+            *self.facet_mut(facet)? = Facet {
+                normal,
+                offset,
+                key: T::zero(),
+                vertices,
+                neighbors: vertices,
+                link: fresh,
+                state: State::Live,
+            };
+        }
+        Some(())
+    }
+}
+
+impl<T: Real, const N: usize> Facet<T, N> {
+    /// Fills untouched memory.
+    pub fn empty() -> Self {
+        Facet {
+            normal: Vector::zeros(),
+            offset: T::zero(),
+            key: T::zero(),
+            vertices: [NONE; N],
+            neighbors: [NONE; N],
+            link: NONE,
+            state: State::Free,
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Vertex<T, N> {
+    /// Fills untouched memory.
+    pub fn empty() -> Self {
+        Vertex { point: Vector::zeros(), witness: Vector::zeros() }
+    }
+}

@@ -1,0 +1,89 @@
+//! Planes of facets: the incremental normal and its repair.
+
+use super::{Index, Polytope};
+use crate::scalar::{Real, Vector, norm};
+
+impl<T: Real, const N: usize> Polytope<'_, T, N> {
+    /// The normal of the plane through the ridge that facets F and G share, and a point at height `above` > 0
+    /// over F and `below` <= 0 over G: the combination of n_F and n_G that vanishes on the point. O(N), and unlike
+    /// solving eq. 22 it stays a supporting direction when the new facet is a sliver.
+    pub(super) fn join(above: T, below: T, normal_f: &Vector<T, N>, normal_g: &Vector<T, N>) -> Vector<T, N> {
+        normal_g * above - normal_f * below
+    }
+
+    /// Normalises a facet's normal, repairs it where it lost accuracy, and returns it with the offset.
+    ///
+    /// Where F and G are almost opposite (a thin polytope), the combination cancels. That shows as a spread of
+    /// n.v over the facet's vertices above the resolution; then the normal is projected once more onto the orthogonal
+    /// complement of the facet's edges.
+    pub(super) fn plane(&self, vertices: &[Index; N], normal: Vector<T, N>) -> Option<(Vector<T, N>, T)> {
+        let normal = normal * (T::one() / norm(&normal));
+        let (lowest, highest) = self.heights(vertices, &normal)?;
+        if highest - lowest <= self.resolution() {
+            return Some((normal, lowest));
+        }
+        let repaired = self.repair(vertices, &normal)?;
+        let (low, high) = self.heights(vertices, &repaired)?;
+        // Not a number compares false: the first normal is kept, unless it is none itself.
+        if high - low < highest - lowest || !(lowest <= highest) { Some((repaired, low)) } else { Some((normal, lowest)) }
+    }
+
+    /// min and max of n.v over the vertices.
+    fn heights(&self, vertices: &[Index; N], normal: &Vector<T, N>) -> Option<(T, T)> {
+        let mut range: Option<(T, T)> = None;
+        for &v in vertices {
+            let height = self.vertices.get(usize::from(v))?.point.dot(normal);
+            range = Some(match range {
+                None => (height, height),
+                Some((low, high)) => (low.at_most(height), high.at_least(height)),
+            });
+        }
+        range
+    }
+
+    /// A unit vector orthogonal to the facet's edges, on the side of `hint`. Gram-Schmidt with pivoting; where
+    /// the facet is flat in more than one direction, any of its normals will do.
+    #[cold]
+    fn repair(&self, vertices: &[Index; N], hint: &Vector<T, N>) -> Option<Vector<T, N>> {
+        let mut edges = [Vector::<T, N>::zeros(); N];
+        let base = self.vertices.get(usize::from(*vertices.first()?))?.point;
+        for (edge, &v) in edges.iter_mut().zip(vertices) {
+            *edge = self.vertices.get(usize::from(v))?.point - base;
+        }
+        let mut hint = if hint.iter().all(|x| x.finite()) { *hint } else { Vector::zeros() };
+        let mut axes = [Vector::<T, N>::zeros(); N];
+        for i in 0..N {
+            axes[i][i] = T::one();
+        }
+        for _ in 1..N {
+            let Some(longest) = edges.iter().copied().max_by(|a, b| {
+                a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal)
+            }) else {
+                break;
+            };
+            let length = norm(&longest);
+            if !(length > T::zero()) {
+                break;
+            }
+            let q = longest * (T::one() / length);
+            // Twice is enough: the second pass removes what the first left by rounding.
+            for _ in 0..2 {
+                for v in edges.iter_mut().chain(axes.iter_mut()).chain(core::iter::once(&mut hint)) {
+                    let along = v.dot(&q);
+                    v.axpy(-along, &q, T::one());
+                }
+            }
+        }
+        let small = T::of(0.01);
+        let normal = if hint.dot(&hint) > small * small {
+            hint
+        } else {
+            let axis = axes.iter().copied().max_by(|a, b| {
+                a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal)
+            })?;
+            if axis.dot(&(self.center - base)) > T::zero() { -axis } else { axis }
+        };
+        let length = norm(&normal);
+        (length > T::zero()).then(|| normal * (T::one() / length))
+    }
+}

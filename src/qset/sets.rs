@@ -1,0 +1,398 @@
+//! The built-in gauge sets. All lengths are in the unit of the set A, or of the wrench that one unit of depth means.
+//!
+//! Each set contains the origin and is not the origin alone. The `error` of each is for unit directions; u is the unit
+//! roundoff.
+
+use nalgebra::SMatrix;
+
+use super::Gauge;
+use crate::scalar::{Real, Vector, norm};
+use crate::support::{BoxShape, Ellipsoid, Failure, Point, Points, ShapeError, Support};
+
+/// `roundings` roundoffs of a length, with room for second order terms.
+#[inline]
+fn roundings<T: Real>(roundings: usize, length: T) -> T {
+    T::count(roundings) * T::ROUNDOFF * length
+}
+
+/// A size that must not be zero.
+fn positive<T: Real>(size: T) -> Result<T, ShapeError> {
+    if size > T::zero() { Ok(size) } else { Err(ShapeError::Empty) }
+}
+
+impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        (**self).value(u)
+    }
+    #[inline]
+    fn ball_radius(&self) -> Option<T> {
+        (**self).ball_radius()
+    }
+    fn error(&self) -> T {
+        (**self).error()
+    }
+}
+
+/// The Euclidean ball, `h = radius |u|`: with radius 1, d_Q is the ordinary penetration depth (paper, eq. 24).
+///
+/// `error`: N/2 + 1 roundoffs of the norm, one of the product: `(N + 4) u radius`.
+///
+/// ```
+/// use qdist::{qset::{Ball, Gauge}, scalar::Vector};
+/// let q = Ball::new(2.0).unwrap();
+/// assert_eq!(q.value(&Vector::from([0.0, 3.0, 4.0])).unwrap(), 10.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<T> {
+    radius: T,
+}
+
+impl<T: Real> Ball<T> {
+    /// The ball of radius `radius` > 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] for radius 0.
+    pub fn new(radius: T) -> Result<Self, ShapeError> {
+        BoxShape::new(Vector::<T, 1>::new(radius))?;
+        Ok(Self { radius: positive(radius)? })
+    }
+
+    /// The unit ball.
+    #[must_use]
+    pub fn unit() -> Self {
+        Self { radius: T::one() }
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for Ball<T> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        Ok(self.radius * norm(u))
+    }
+    #[inline]
+    fn ball_radius(&self) -> Option<T> {
+        Some(self.radius)
+    }
+    fn error(&self) -> T {
+        roundings(N + 4, self.radius)
+    }
+}
+
+/// An ellipsoid `{R D x : |x| <= 1}`, D the diagonal matrix of the semi axes: `h = |D R^T u|`. Some semi axes may be zero.
+///
+/// The product D R^T is prepared, divided by the largest semi axis m so that its squares stay in range. `error`: with F
+/// the Frobenius norm of that matrix, `N + 3` roundoffs of F for its entries and the product, `N/2 + 2` roundoffs of the
+/// value (at most m F): `(2 N + 6) u m F`.
+///
+/// ```
+/// use nalgebra::SMatrix;
+/// use qdist::{qset::{EllipsoidGauge, Gauge}, scalar::Vector};
+/// let q = EllipsoidGauge::new(Vector::from([2.0, 0.0]), SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0)).unwrap();
+/// assert_eq!(q.value(&Vector::from([7.0, 1.0])).unwrap(), 2.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidGauge<T, const N: usize> {
+    /// Column i is semi_i / size times column i of R.
+    columns: SMatrix<T, N, N>,
+    size: T,
+    error: T,
+}
+
+impl<T: Real, const N: usize> EllipsoidGauge<T, N> {
+    /// The ellipsoid with these semi axes >= 0 along the columns of `rotation`.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] when the set is the origin alone;
+    /// [`ShapeError::NotOrthonormal`] when a column of `rotation` is not of unit length (to 1e-3).
+    pub fn new(semi_axes: Vector<T, N>, rotation: SMatrix<T, N, N>) -> Result<Self, ShapeError> {
+        let size = positive(Ellipsoid::new(semi_axes)?.extent())?;
+        if !rotation.iter().all(|x| x.finite()) {
+            return Err(ShapeError::NonFinite);
+        }
+        // Orthogonality is not needed for h; the length is, for Q to be the set that the semi axes say.
+        let unit = |c: &[T; N]| {
+            let off = c.iter().fold(-T::one(), |s, &x| s + x * x);
+            off <= T::of(2e-3) && off >= T::of(-2e-3)
+        };
+        if !rotation.data.0.iter().all(unit) {
+            return Err(ShapeError::NotOrthonormal);
+        }
+        let columns = SMatrix::<T, N, N>::from_fn(|i, j| semi_axes[j] / size * rotation[(i, j)]);
+        let frobenius = columns.iter().fold(T::zero(), |s, &x| s + x * x).root();
+        Ok(Self { columns, size, error: roundings(2 * N + 6, size * frobenius) })
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        let mut squares = -T::zero();
+        for column in &self.columns.data.0 {
+            let x = column.iter().zip(u.iter()).fold(-T::zero(), |s, (&a, &b)| s + a * b);
+            squares += x * x;
+        }
+        Ok(self.size * squares.root())
+    }
+    fn error(&self) -> T {
+        self.error
+    }
+}
+
+/// A box [-h_1, h_1] x ...: `h = sum of h_i |u_i|`. Some half extents may be zero.
+///
+/// `error`: N roundoffs of the sum, which is at most |half|: `(N + 1) u |half|`.
+///
+/// ```
+/// use qdist::{qset::{BoxGauge, Gauge}, scalar::Vector};
+/// let q = BoxGauge::new(Vector::from([1.0, 2.0])).unwrap();
+/// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 3.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxGauge<T, const N: usize> {
+    shape: BoxShape<T, N>,
+}
+
+impl<T: Real, const N: usize> BoxGauge<T, N> {
+    /// The box of half extents `half` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] when all are zero.
+    pub fn new(half: Vector<T, N>) -> Result<Self, ShapeError> {
+        let shape = BoxShape::new(half)?;
+        positive(shape.extent())?;
+        Ok(Self { shape })
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for BoxGauge<T, N> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        Ok(self.shape.support(u)?.dot(u))
+    }
+    fn error(&self) -> T {
+        roundings(N + 1, self.shape.extent())
+    }
+}
+
+/// A cross-polytope, the hull of the points `+semi_i e_i` and `-semi_i e_i`: `h = max |semi_i u_i|`. Some may be zero.
+///
+/// `error`: one rounding of a product: `2 u max(semi)`.
+///
+/// ```
+/// use qdist::{qset::{CrossPolytope, Gauge}, scalar::Vector};
+/// let q = CrossPolytope::new(Vector::from([1.0, 2.0])).unwrap();
+/// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 2.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrossPolytope<T, const N: usize> {
+    semi: Vector<T, N>,
+    size: T,
+}
+
+impl<T: Real, const N: usize> CrossPolytope<T, N> {
+    /// The cross-polytope of semi axes `semi` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] when all are zero.
+    pub fn new(semi: Vector<T, N>) -> Result<Self, ShapeError> {
+        let size = positive(Ellipsoid::new(semi)?.extent())?;
+        Ok(Self { semi, size })
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        let farther = |m: T, (&s, &x): (&T, &T)| m.at_least(s * x).at_least(-s * x);
+        Ok(self.semi.iter().zip(u.iter()).fold(T::zero(), farther))
+    }
+    fn error(&self) -> T {
+        roundings(2, self.size)
+    }
+}
+
+/// The segment from the origin to `end`: `h = max(0, u.end)`. d_Q is then the length, in units of `end`, of the ray from the
+/// origin along `end` until it leaves A.
+///
+/// `error`: N roundoffs of the product: `(N + 1) u |end|`.
+///
+/// ```
+/// use qdist::{qset::{Gauge, Segment}, scalar::Vector};
+/// let q = Segment::new(Vector::from([0.0, 2.0])).unwrap();
+/// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 2.0);
+/// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<T, const N: usize> {
+    end: Vector<T, N>,
+    length: T,
+}
+
+impl<T: Real, const N: usize> Segment<T, N> {
+    /// The segment from the origin to `end`, which is not zero.
+    ///
+    /// # Errors
+    /// [`ShapeError::NonFinite`]; [`ShapeError::Empty`] when `end` is zero.
+    pub fn new(end: Vector<T, N>) -> Result<Self, ShapeError> {
+        let length = positive(Point::new(end)?.extent())?;
+        Ok(Self { end, length })
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for Segment<T, N> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        Ok(T::zero().at_least(self.end.dot(u)))
+    }
+    fn error(&self) -> T {
+        roundings(N + 1, self.length)
+    }
+}
+
+/// The hull of the origin and a list of points, by linear scan: `h = max(0, max u.q)`.
+///
+/// `error`: that of [`Points`] for the choice, and N roundoffs of the product: `(3 N + 4) u max |q|`.
+///
+/// ```
+/// use qdist::{qset::{Gauge, Vertices}, scalar::Vector};
+/// let corners = [[1.0, 0.0], [0.0, 3.0]];
+/// let q = Vertices::new(&corners).unwrap();
+/// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 3.0);
+/// assert_eq!(q.value(&Vector::from([-1.0, -1.0])).unwrap(), 0.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Vertices<'a, T, const N: usize> {
+    points: Points<'a, T, N>,
+}
+
+impl<'a, T: Real, const N: usize> Vertices<'a, T, N> {
+    /// The hull of the origin and `points`. Reads all of them once.
+    ///
+    /// # Errors
+    /// [`ShapeError::NonFinite`]; [`ShapeError::Empty`] when there is no point but the origin.
+    pub fn new(points: &'a [[T; N]]) -> Result<Self, ShapeError> {
+        let points = Points::new(points)?;
+        positive(points.extent())?;
+        Ok(Self { points })
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for Vertices<'_, T, N> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        Ok(T::zero().at_least(self.points.support(u)?.dot(u)))
+    }
+    fn error(&self) -> T {
+        self.points.error() + roundings(N + 2, self.points.extent())
+    }
+}
+
+/// A gauge given by a closure `u -> h_Q(u)` and the bound of its rounding error.
+///
+/// ```
+/// use qdist::{qset::{Gauge, GaugeFn}, scalar::Vector};
+/// let q = GaugeFn::new(|u: &Vector<f64, 2>| Ok(u[0].abs()), 0.0).unwrap();
+/// assert_eq!(q.value(&Vector::from([-2.0, 5.0])).unwrap(), 2.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct GaugeFn<F, T> {
+    function: F,
+    error: T,
+}
+
+impl<F, T: Real> GaugeFn<F, T> {
+    /// `function` computes h_Q(u) >= 0, positively homogeneous and convex in u, with rounding error at most `error` for
+    /// unit u.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`] of `error`.
+    pub fn new(function: F, error: T) -> Result<Self, ShapeError> {
+        BoxShape::new(Vector::<T, 1>::new(error))?;
+        Ok(Self { function, error })
+    }
+}
+
+impl<F, T: Real, const N: usize> Gauge<T, N> for GaugeFn<F, T>
+where
+    F: Fn(&Vector<T, N>) -> Result<T, Failure>,
+{
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        (self.function)(u)
+    }
+    fn error(&self) -> T {
+        self.error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directions(n: usize) -> impl Iterator<Item = Vector<f32, 3>> {
+        let mut s = 3u64;
+        let mut next = move || {
+            s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((s >> 33) as f64 / f64::from(1u32 << 30) - 1.0) as f32
+        };
+        (0..n).map(move |_| Vector::from([next(), next(), next()]))
+    }
+
+    /// The value in `f32` against an exact form in `f64`, at unit directions, to within the gauge's own error.
+    fn check(gauge: &impl Gauge<f32, 3>, exact: impl Fn(&Vector<f64, 3>) -> f64) {
+        for u in directions(3000) {
+            let u = u / u.dot(&u).sqrt();
+            let v = u.map(f64::from);
+            let (value, truth) = (f64::from(gauge.value(&u).unwrap()), exact(&v));
+            assert!(value >= 0.0 && (value - truth).abs() <= f64::from(gauge.error()), "{u} {value} {truth}");
+        }
+    }
+
+    #[test]
+    fn values_are_within_their_error() {
+        for semi in [[1.0f32, 2.0, 3.0], [1e-9, 1.0, 1e9], [0.0, 0.0, 1e-9], [1e-25, 1e-26, 0.0], [1e25, 0.0, 1e25]] {
+            let v = Vector::from(semi);
+            let w = v.map(f64::from);
+            check(&BoxGauge::new(v).unwrap(), |u| u.zip_map(&w, |x, h| x.abs() * h).sum());
+            check(&CrossPolytope::new(v).unwrap(), |u| u.zip_map(&w, |x, h| x.abs() * h).max());
+            check(&Segment::new(v).unwrap(), |u| u.dot(&w).max(0.0));
+            let points = [semi, [-semi[1], semi[2], semi[0]], [semi[2], -semi[0], -semi[1]]];
+            let all = points.map(|p| Vector::from(p.map(f64::from)));
+            check(&Vertices::new(&points).unwrap(), |u| all.iter().fold(0.0, |m, p| p.dot(u).max(m)));
+            let (s, c) = 0.7f32.sin_cos();
+            // Off orthonormal by rounding and a little more.
+            let r = SMatrix::<f32, 3, 3>::new(c, -s, 0.0, s, c, 1e-7, 0.0, 0.0, 1.0);
+            let r64 = r.map(f64::from);
+            check(&EllipsoidGauge::new(v, r).unwrap(), |u| (r64.transpose() * u).component_mul(&w).norm());
+        }
+        check(&Ball::new(1e9f32).unwrap(), |u| 1e9 * u.norm());
+        check(&GaugeFn::new(|u: &Vector<f32, 3>| Ok(u.x.abs()), 0.0).unwrap(), |u| u.x.abs());
+        check(&&Ball::<f32>::unit(), |u| u.norm());
+    }
+
+    #[test]
+    fn failures_and_radii_pass_through() {
+        let q = GaugeFn::new(|_: &Vector<f64, 2>| Err(Failure(7)), 0.0).unwrap();
+        assert_eq!(q.value(&Vector::from([1.0, 0.0])), Err(Failure(7)));
+        assert_eq!(Gauge::<f64, 3>::ball_radius(&&Ball::new(2.0).unwrap()), Some(2.0));
+    }
+
+    #[test]
+    fn constructors_refuse() {
+        let identity = SMatrix::<f64, 2, 2>::identity();
+        let zero = Vector::<f64, 2>::zeros();
+        assert_eq!(Ball::new(0.0), Err(ShapeError::Empty));
+        assert_eq!(Ball::new(-1.0f32), Err(ShapeError::Negative));
+        assert_eq!(Ball::new(f64::NAN), Err(ShapeError::NonFinite));
+        assert_eq!(EllipsoidGauge::new(zero, identity), Err(ShapeError::Empty));
+        assert_eq!(EllipsoidGauge::new(Vector::from([1.0, 1.0]), identity * 2.0), Err(ShapeError::NotOrthonormal));
+        assert_eq!(EllipsoidGauge::new(Vector::from([1.0, 1.0]), identity * f64::NAN), Err(ShapeError::NonFinite));
+        assert_eq!(BoxGauge::new(zero), Err(ShapeError::Empty));
+        assert_eq!(CrossPolytope::new(zero), Err(ShapeError::Empty));
+        assert_eq!(CrossPolytope::new(Vector::from([-1.0, 1.0])), Err(ShapeError::Negative));
+        assert_eq!(Segment::new(zero), Err(ShapeError::Empty));
+        assert_eq!(Vertices::<f64, 2>::new(&[]).err(), Some(ShapeError::Empty));
+        assert_eq!(Vertices::new(&[[0.0f64, 0.0]]).err(), Some(ShapeError::Empty));
+    }
+}

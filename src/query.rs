@@ -1,0 +1,287 @@
+//! The state of one query: what has been asked of A and Q, the best upper bound so far, and how all of it becomes an
+//! [`Answer`].
+
+use crate::answer::{Answer, Stop};
+use crate::bounds::{Bounds, Bracket, Tolerance};
+use crate::polytope::{Polytope, Vertex};
+use crate::qset::Gauge;
+use crate::scalar::{Real, Vector, finite};
+use crate::simplex::Simplex;
+use crate::support::{Failure, Support};
+
+/// How a query ends, and where it looks first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options<T, const N: usize> {
+    /// Stop when upper - lower <= max(absolute, relative |d|). Default 0.
+    pub absolute: T,
+    /// See `absolute`. Default 1e-6 in `f64`, 1e-4 in `f32`.
+    pub relative: T,
+    /// Stop as soon as d >= threshold or d < threshold is certain.
+    pub threshold: Option<T>,
+    /// Most points to add; 0: until the workspace is full. Default 0.
+    pub max_iterations: u32,
+    /// The direction to look in first (any length, not zero): where the answer was last time.
+    pub guess: Option<Vector<T, N>>,
+}
+
+impl<T: Real, const N: usize> Default for Options<T, N> {
+    fn default() -> Self {
+        Options {
+            absolute: T::zero(),
+            relative: T::RELATIVE_TOLERANCE,
+            threshold: None,
+            max_iterations: 0,
+            guess: None,
+        }
+    }
+}
+
+pub(crate) struct Query<'q, T, const N: usize> {
+    a: &'q dyn Support<T, N>,
+    q: &'q dyn Gauge<T, N>,
+    /// Radius of Q where it is a ball.
+    pub ball: Option<T>,
+    gauge_error: T,
+    pub bounds: Bounds<T>,
+    pub options: Options<T, N>,
+    /// Largest norm of a point seen.
+    reach: T,
+    /// The best upper bound: unit direction, support value, value of Q, and their quotient without margins.
+    pub direction: Vector<T, N>,
+    height: T,
+    gauge: T,
+    ratio: T,
+    /// Ask the support function without its shortcuts.
+    exhaustive: bool,
+    pub iterations: u32,
+    support_calls: u32,
+    /// Affine dimension of the core.
+    pub dimension: usize,
+}
+
+impl<'q, T: Real, const N: usize> Query<'q, T, N> {
+    /// `radius` is the ball term that is taken out of A.
+    pub fn new(a: &'q dyn Support<T, N>, q: &'q dyn Gauge<T, N>, radius: T, options: Options<T, N>) -> Self {
+        let extent = a.extent();
+        Query {
+            a,
+            q,
+            ball: q.ball_radius(),
+            gauge_error: q.error(),
+            bounds: Bounds { support_error: a.error(), radius, dimension: N, unknown_extent: !(extent > T::zero()) },
+            options,
+            reach: T::zero(),
+            direction: Vector::zeros(),
+            height: T::HUGE,
+            gauge: T::one(),
+            ratio: T::HUGE,
+            exhaustive: false,
+            iterations: 0,
+            support_calls: 0,
+            dimension: N,
+        }
+    }
+
+    /// The direction to look in first.
+    pub fn first_direction(&self) -> Vector<T, N> {
+        let mut axis = Vector::<T, N>::zeros();
+        if let Some(x) = axis.iter_mut().next() {
+            *x = T::one();
+        }
+        let guess = self.options.guess.unwrap_or(axis);
+        // Scaled to coordinates of at most 1, so that the squares cannot under- or overflow.
+        let largest = guess.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+        if !finite(&guess) || !(largest > T::zero()) {
+            return axis;
+        }
+        let scaled = guess.map(|x| x / largest);
+        scaled * (T::one() / scaled.dot(&scaled).root())
+    }
+
+    /// Asks A along a unit direction, and keeps the upper bound if it is the best.
+    pub fn support(&mut self, direction: &Vector<T, N>) -> Result<(Vertex<T, N>, T), Failure> {
+        self.support_calls = self.support_calls.saturating_add(1);
+        let (point, witness) = if self.exhaustive {
+            let point = self.a.exhaustive(direction)?;
+            let (_, witness) = self.a.support_with_witness(direction)?;
+            (point, witness)
+        } else {
+            self.a.support_with_witness(direction)?
+        };
+        let squared = point.dot(&point);
+        if !squared.finite() || !finite(&witness) {
+            return Err(Failure(crate::NOT_FINITE));
+        }
+        if squared > self.reach * self.reach {
+            self.reach = squared.root();
+        }
+        let height = direction.dot(&point);
+        self.note(direction, height)?;
+        Ok((Vertex { point, witness }, height))
+    }
+
+    fn note(&mut self, direction: &Vector<T, N>, height: T) -> Result<(), Failure> {
+        let gauge = self.gauge(direction)?;
+        let top = height + self.bounds.radius;
+        if gauge <= self.gauge_error && self.ball.is_none() {
+            // Q has no extent that way. It bounds nothing, but it may show that the origin is outside.
+            if top < T::zero() && height < self.height {
+                (self.direction, self.height, self.gauge) = (*direction, height, gauge);
+            }
+            return Ok(());
+        }
+        let ratio = top / gauge;
+        if ratio < self.ratio {
+            (self.direction, self.height, self.gauge, self.ratio) = (*direction, height, gauge, ratio);
+        }
+        Ok(())
+    }
+
+    fn gauge(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
+        match self.ball {
+            Some(radius) => Ok(radius),
+            None => {
+                let value = self.q.value(direction)?;
+                if value.finite() && value >= T::zero() { Ok(value) } else { Err(Failure(crate::NOT_FINITE)) }
+            }
+        }
+    }
+
+    /// The key of a facet, eq. 24: no more than its true distance with respect to Q, up to the margin of the bracket.
+    pub fn key(&self, normal: &Vector<T, N>, offset: T) -> Result<T, Failure> {
+        let top = offset + self.bounds.radius;
+        let bottom = match self.ball {
+            Some(radius) => return Ok(top / radius),
+            None => self.gauge(normal)? + self.gauge_error,
+        };
+        Ok(if bottom > T::zero() { top / bottom } else { T::HUGE })
+    }
+
+    /// The best quotient h_A/h_Q so far, without margins.
+    pub fn ratio(&self) -> T {
+        self.ratio
+    }
+
+    pub fn margin(&self) -> T {
+        self.bounds.margin(self.reach)
+    }
+
+    /// Is the origin certainly outside the core, by this support value?
+    pub fn is_outside(&self, height: T) -> bool {
+        height + self.margin() < T::zero()
+    }
+
+    /// The upper bound: proved by `direction`.
+    pub fn upper(&self) -> T {
+        let margin = self.margin();
+        match self.ball {
+            Some(radius) => self.bounds.upper(self.height, margin, radius, T::zero()),
+            None if self.is_outside(self.height) => self.bounds.upper(self.height, margin, T::one(), T::zero()),
+            None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
+        }
+    }
+
+    /// Lower bound from a point of A at this distance: d >= -distance, whether or not the origin is inside.
+    pub fn lower_from_distance(&self, distance: T) -> T {
+        let gauge = self.ball.unwrap_or(T::one());
+        self.bounds.lower(-distance, self.margin(), gauge, T::zero())
+    }
+
+    /// Lower bound from the lowest key of a closed surface around the origin whose facets have offsets of at least
+    /// `inradius`; `None` when the origin is not certainly inside (module `bounds`).
+    pub fn lower_from_key(&self, key: T, inradius: T) -> Option<T> {
+        let margin = self.margin();
+        if !(inradius > margin) {
+            return None;
+        }
+        Some(match self.ball {
+            Some(radius) => self.bounds.lower(key * radius - self.bounds.radius, margin, radius, T::zero()),
+            None => key * (T::one() - margin / inradius) * (T::one() - T::count(8) * T::ROUNDOFF),
+        })
+    }
+
+    /// Does the bracket end the query?
+    pub fn verdict(&self, bracket: &Bracket<T>) -> Option<Stop> {
+        if let Some(threshold) = self.options.threshold {
+            if bracket.lower >= threshold {
+                return Some(Stop::Above);
+            }
+            if bracket.upper < threshold {
+                return Some(Stop::Below);
+            }
+        }
+        self.tolerance().met(bracket).then_some(Stop::Met)
+    }
+
+    fn tolerance(&self) -> Tolerance<T> {
+        Tolerance { absolute: self.options.absolute, relative: self.options.relative }
+    }
+
+    /// Counts an iteration; true when the limit is reached.
+    pub fn exhausted(&mut self) -> bool {
+        if self.options.max_iterations != 0 && self.iterations >= self.options.max_iterations {
+            return true;
+        }
+        self.iterations = self.iterations.saturating_add(1);
+        false
+    }
+
+    /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
+    /// shortcuts are then over for this query.
+    pub fn verify(&mut self) -> Result<bool, Failure> {
+        if self.exhaustive || !self.a.has_shortcuts() {
+            return Ok(true);
+        }
+        self.exhaustive = true;
+        let direction = self.direction;
+        self.support_calls = self.support_calls.saturating_add(1);
+        let height = direction.dot(&self.a.exhaustive(&direction)?);
+        if !height.finite() {
+            return Err(Failure(crate::NOT_FINITE));
+        }
+        if height <= self.height {
+            return Ok(true);
+        }
+        self.height = height;
+        self.ratio = (height + self.bounds.radius) / self.gauge;
+        Ok(false)
+    }
+
+    /// The answer for this stop, lower bound and evidence. `polytope` tells what was used.
+    pub fn answer(
+        &mut self,
+        stop: Stop,
+        lower: T,
+        witness: Simplex<T, N>,
+        polytope: &Polytope<'_, T, N>,
+    ) -> Answer<T, N> {
+        let stop = match self.verify() {
+            Ok(_) => stop,
+            Err(Failure(code)) => {
+                (self.height, self.gauge) = (T::HUGE, T::one());
+                Stop::Failed(code)
+            }
+        };
+        let upper = self.upper();
+        let met = self.tolerance().met(&Bracket { lower, upper });
+        // An early verdict must survive the final check.
+        let stop = match (stop, self.options.threshold) {
+            (Stop::Below, Some(t)) if !(upper < t) => Stop::Rounding,
+            (Stop::Above, Some(t)) if !(lower >= t) => Stop::Rounding,
+            (stop, _) => stop,
+        };
+        Answer {
+            outcome: stop.outcome(lower, upper, met),
+            lower,
+            upper,
+            direction: self.direction,
+            witness,
+            dimension: self.dimension,
+            iterations: self.iterations,
+            support_calls: self.support_calls,
+            vertices: polytope.vertices().len(),
+            facets: polytope.peak_facets(),
+            failure: if let Stop::Failed(code) = stop { code } else { 0 },
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The scalar: `f32` or `f64`, with every square root and every tolerance in one place.
+//!
+//! The rest of the crate is generic over [`Real`]. What depends on the machine (the square root
+//! instruction) and what depends on the format (the unit roundoff and the tolerances made from it) is
+//! written here and nowhere else.
+
+use nalgebra::{RealField, SVector};
+
+/// A vector of dimension `N`.
+pub type Vector<T, const N: usize> = SVector<T, N>;
+
+/// A floating-point scalar: `f32` or `f64`.
+pub trait Real: RealField + Copy {
+    /// Unit roundoff u: half the distance between 1 and the next number. Every elementary operation,
+    /// the square root included, has relative error at most u.
+    const ROUNDOFF: Self;
+    /// The largest finite number: stands for "unbounded" where no arithmetic follows.
+    const HUGE: Self;
+    /// The default relative tolerance of a query: 1e-6 in `f64`, 1e-4 in `f32`.
+    const RELATIVE_TOLERANCE: Self;
+
+    /// Correctly rounded square root; the argument must not be negative.
+    fn root(self) -> Self;
+    /// Nearest `f64`, for reports and constants.
+    fn to_f64(self) -> f64;
+    /// Nearest value of this type to a constant.
+    fn of(value: f64) -> Self;
+    /// A small count as a scalar.
+    #[inline]
+    fn count(n: usize) -> Self {
+        Self::of(n as f64)
+    }
+    /// Neither infinite nor NaN.
+    fn finite(self) -> bool;
+    /// `self` if it is larger or `other` is not a number (unlike `RealField::max`, never a call).
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+    /// `self` if it is smaller or `other` is not a number.
+    #[inline(always)]
+    fn at_most(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+}
+
+macro_rules! real {
+    ($t:ident, $sqrt:path, $tolerance:expr) => {
+        impl Real for $t {
+            const ROUNDOFF: Self = $t::EPSILON / 2.0;
+            const HUGE: Self = $t::MAX;
+            const RELATIVE_TOLERANCE: Self = $tolerance;
+
+            #[inline(always)]
+            fn root(self) -> Self {
+                #[cfg(any(test, feature = "std"))]
+                return self.sqrt();
+                #[cfg(not(any(test, feature = "std")))]
+                return $sqrt(self);
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+            #[inline(always)]
+            fn finite(self) -> bool {
+                self.is_finite()
+            }
+        }
+    };
+}
+
+real!(f32, libm::sqrtf, 1e-4);
+real!(f64, libm::sqrt, 1e-6);
+
+/// Euclidean norm.
+#[inline(always)]
+pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+    v.dot(v).root()
+}
+
+/// Are all coordinates finite?
+#[inline]
+pub fn finite<T: Real, const N: usize>(v: &Vector<T, N>) -> bool {
+    v.iter().all(|x| x.finite())
+}

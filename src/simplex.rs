@@ -1,0 +1,279 @@
+//! Small simplices: the point of one nearest to the origin, and the first full-dimensional one.
+//!
+//! Both rest on Gram-Schmidt over at most N edges, with no matrix to invert and nothing to pivot on that could vanish
+//! unnoticed.
+
+use crate::polytope::Vertex;
+use crate::scalar::{Real, Vector, norm};
+use heapless::Vec;
+
+/// The most vertices that a simplex in R^N can have here, N + 1 <= 7.
+pub const MAX_CORNERS: usize = 7;
+
+/// A simplex with the barycentric weights of its point nearest to the origin.
+#[derive(Clone)]
+pub struct Simplex<T, const N: usize> {
+    pub corners: Vec<Corner<T, N>, MAX_CORNERS>,
+}
+
+/// A vertex and its barycentric weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner<T, const N: usize> {
+    /// The point and its witness.
+    pub vertex: Vertex<T, N>,
+    /// Barycentric weight, >= 0; the weights add up to 1.
+    pub weight: T,
+}
+
+/// The orthonormal basis q of the edges e_j = v_j - v_0, and R with e_j = sum over i <= j of R[i][j] q_i.
+struct Edges<T, const N: usize> {
+    q: [Vector<T, N>; N],
+    r: [[T; N]; N],
+    count: usize,
+}
+
+impl<T: Real, const N: usize> Edges<T, N> {
+    fn new() -> Self {
+        Edges { q: [Vector::zeros(); N], r: [[T::zero(); N]; N], count: 0 }
+    }
+
+    /// Adds an edge; false when it lies in the span of the others up to `resolution`.
+    fn push(&mut self, edge: &Vector<T, N>, resolution: T) -> bool {
+        let column = self.count;
+        let mut rest = *edge;
+        for i in 0..N {
+            if i < column {
+                let along = rest.dot(&self.q[i]);
+                rest.axpy(-along, &self.q[i], T::one());
+                if let Some(entry) = self.r[i].get_mut(column) {
+                    *entry = along;
+                }
+            }
+        }
+        let length = norm(&rest);
+        if !(length > resolution) {
+            return false;
+        }
+        let (Some(q), Some(row)) = (self.q.get_mut(column), self.r.get_mut(column)) else { return false };
+        *q = rest * (T::one() / length);
+        if let Some(entry) = row.get_mut(column) {
+            *entry = length;
+        }
+        self.count += 1;
+        true
+    }
+
+    /// The part of v orthogonal to all edges.
+    fn complement(&self, v: &Vector<T, N>) -> Vector<T, N> {
+        let mut rest = *v;
+        for i in 0..N {
+            if i < self.count {
+                let along = rest.dot(&self.q[i]);
+                rest.axpy(-along, &self.q[i], T::one());
+            }
+        }
+        rest
+    }
+
+    /// Solves R x = b by back substitution; b and x may be scalars or vectors.
+    fn back_substitute<X>(&self, b: &mut [X; N])
+    where
+        X: Copy + core::ops::Sub<Output = X> + core::ops::Mul<T, Output = X>,
+    {
+        for i in (0..N).rev() {
+            if i >= self.count {
+                continue;
+            }
+            let mut x = b[i];
+            for j in 0..N {
+                if j > i && j < self.count {
+                    x = x - b[j] * self.r[i][j];
+                }
+            }
+            b[i] = x * (T::one() / self.r[i][i]);
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Simplex<T, N> {
+    pub fn new(vertex: Vertex<T, N>) -> Self {
+        let mut corners = Vec::new();
+        let _ = corners.push(Corner { vertex, weight: T::one() });
+        Simplex { corners }
+    }
+
+    /// The point that the weights stand for.
+    pub fn point(&self) -> Vector<T, N> {
+        self.corners.iter().fold(Vector::zeros(), |sum, c| sum + c.vertex.point * c.weight)
+    }
+
+    /// The witness that the weights stand for.
+    pub fn witness(&self) -> Vector<T, N> {
+        self.corners.iter().fold(Vector::zeros(), |sum, c| sum + c.vertex.witness * c.weight)
+    }
+
+    /// Adds a vertex with weight zero; false when the simplex is full.
+    pub fn push(&mut self, vertex: Vertex<T, N>) -> bool {
+        self.corners.len() <= N && self.corners.push(Corner { vertex, weight: T::zero() }).is_ok()
+    }
+
+    /// Moves the weights to the point of the simplex nearest to the origin and drops the corners that it does not
+    /// need (Wolfe's minor cycle: minimise over the affine hull; while that leaves the simplex, walk to its
+    /// boundary and drop what vanished). False when the corners are affinely dependent up to
+    /// `resolution`: then the weights are still those of a point of the simplex, but perhaps not of the nearest.
+    pub fn minimize(&mut self, resolution: T) -> bool {
+        for _ in 0..MAX_CORNERS {
+            let Some(target) = self.affine_minimizer(resolution) else { return false };
+            // The largest step from the weights towards the target that keeps all of them >= 0.
+            let mut step = T::one();
+            for (corner, &goal) in self.corners.iter().zip(&target) {
+                if goal <= T::zero() && corner.weight - goal > T::zero() {
+                    step = step.at_most(corner.weight / (corner.weight - goal));
+                } else if goal <= T::zero() {
+                    step = T::zero();
+                }
+            }
+            let mut sum = T::zero();
+            for (corner, &goal) in self.corners.iter_mut().zip(&target) {
+                corner.weight = (corner.weight + (goal - corner.weight) * step).at_least(T::zero());
+                sum += corner.weight;
+            }
+            for corner in &mut self.corners {
+                corner.weight /= sum;
+            }
+            if step >= T::one() {
+                return true;
+            }
+            self.drop_vanished(&target);
+        }
+        false
+    }
+
+    /// Removes the corners that the walk has brought to zero and that the target wants gone.
+    fn drop_vanished(&mut self, target: &[T; MAX_CORNERS]) {
+        let mut goals = target.iter();
+        let tiny = T::count(4) * T::ROUNDOFF;
+        self.corners.retain(|c| goals.next().is_some_and(|&g| c.weight > tiny || g > T::zero()));
+    }
+
+    /// Weights of the point of the affine hull nearest to the origin.
+    fn affine_minimizer(&self, resolution: T) -> Option<[T; MAX_CORNERS]> {
+        let mut weights = [T::zero(); MAX_CORNERS];
+        let base = self.corners.first()?.vertex.point;
+        let mut edges = Edges::<T, N>::new();
+        for corner in self.corners.iter().skip(1) {
+            if !edges.push(&(corner.vertex.point - base), resolution) {
+                return None;
+            }
+        }
+        // v_0 + Q R x nearest to 0: R x = -Q^T v_0.
+        let mut x = [T::zero(); N];
+        for i in 0..N {
+            x[i] = -edges.q[i].dot(&base);
+        }
+        edges.back_substitute(&mut x);
+        let mut first = T::one();
+        for i in 0..N {
+            if i < edges.count {
+                first -= x[i];
+                *weights.get_mut(i + 1)? = x[i];
+            }
+        }
+        *weights.first_mut()? = first;
+        Some(weights)
+    }
+}
+
+/// Builds the first simplex of the polytope: N + 1 affinely independent support points (Section IV-D; no
+/// closest-point iteration is needed, since the expansion tolerates an origin outside).
+///
+/// The caller asks for [`direction`](Start::direction), supports A there and in the opposite direction when the
+/// first answer is poor, and [`accept`](Start::accept)s the point, or [`flat`](Start::flat)tens a direction without width.
+pub struct Start<T, const N: usize> {
+    base: Option<Vector<T, N>>,
+    edges: Edges<T, N>,
+    /// Directions in which A has no width.
+    flat: Edges<T, N>,
+    first: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Start<T, N> {
+    /// `first` is the direction to look in first (non-zero).
+    pub fn new(first: Vector<T, N>) -> Self {
+        Start { base: None, edges: Edges::new(), flat: Edges::new(), first }
+    }
+
+    /// How many directions are still to be spanned or found flat (N + 1 with the base point).
+    pub fn missing(&self) -> usize {
+        if self.base.is_none() { N + 1 } else { N - self.edges.count - self.flat.count }
+    }
+
+    /// The affine dimension found so far.
+    pub fn dimension(&self) -> usize {
+        self.edges.count
+    }
+
+    /// The next direction: from the affine hull of the points so far towards the origin, so that the simplex
+    /// grows around it; where the hull contains the origin, the coordinate axis that sticks out most.
+    pub fn direction(&self) -> Vector<T, N> {
+        let Some(base) = self.base else { return self.first };
+        let outside = |v: &Vector<T, N>| {
+            let once = self.flat.complement(&self.edges.complement(v));
+            self.flat.complement(&self.edges.complement(&once))
+        };
+        let towards = outside(&-base);
+        let length = norm(&towards);
+        if length > T::of(1e-3) * norm(&base) && length > T::zero() {
+            return towards * (T::one() / length);
+        }
+        let mut best = Vector::zeros();
+        let mut longest = T::zero();
+        for i in 0..N {
+            let mut axis = Vector::<T, N>::zeros();
+            axis[i] = T::one();
+            let rest = outside(&axis);
+            let length = norm(&rest);
+            if length > longest {
+                longest = length;
+                best = rest * (T::one() / length);
+            }
+        }
+        best
+    }
+
+    /// How far a point sticks out of the points so far along a direction.
+    pub fn progress(&self, direction: &Vector<T, N>, point: &Vector<T, N>) -> T {
+        self.base.map_or(T::HUGE, |base| (point - base).dot(direction).abs())
+    }
+
+    /// Takes the point as the next vertex; false when it adds no dimension.
+    pub fn accept(&mut self, point: &Vector<T, N>, resolution: T) -> bool {
+        match self.base {
+            None => {
+                self.base = Some(*point);
+                true
+            }
+            Some(base) => self.edges.push(&(point - base), resolution),
+        }
+    }
+
+    /// Records that A has no width along a unit direction.
+    pub fn flat(&mut self, direction: &Vector<T, N>) {
+        if !self.flat.push(direction, T::zero()) {
+            self.flat.count = (self.flat.count + 1).min(N);
+        }
+    }
+
+    /// The N + 1 outward normals of the simplex (not unit): facet i is opposite vertex i. They are minus the gradients of
+    /// the barycentric coordinates, the rows of the inverse edge matrix: X = R^-1 Q^T.
+    pub fn normals(&self) -> Vec<Vector<T, N>, MAX_CORNERS> {
+        let mut rows = self.edges.q;
+        self.edges.back_substitute(&mut rows);
+        let mut normals = Vec::new();
+        let _ = normals.push(rows.iter().fold(Vector::zeros(), |sum, row| sum + row));
+        for row in rows {
+            let _ = normals.push(-row);
+        }
+        normals
+    }
+}

@@ -1,0 +1,86 @@
+//! Convex sets as support functions: the only thing that the solver ever asks of a set A.
+//!
+//! A compact convex set is known by its support function and mapping (paper, eq. 17)
+//!
+//! ```text
+//! h_A(u) = max { u.a : a in A }        s_A(u) = a point of A that attains it
+//! ```
+//!
+//! A set is given in two parts, `A = core + r B`: the points that [`Support::support`] returns belong to
+//! the *core*, and [`Support::radius`] is the radius r of a ball swept over it. A sphere is a point with a
+//! radius, a capsule a segment with a radius, a margin is a radius on anything. With a Euclidean Q the
+//! solver never expands the ball, since d(core + r B) = d(core) + r exactly (`design`: the unit ball is the
+//! worst case of polytope expansion).
+//!
+//! # What a support function promises, in floating point
+//!
+//! For a direction u, let p be the returned point and e = [`Support::error`].
+//! * p is within distance e of the core, and
+//! * u.p >= h(u) - e |u|, where h is the support function of the core.
+//!
+//! The solver's bracket rests on these two lines and on nothing else.
+
+use crate::scalar::{Real, Vector};
+
+mod combine;
+mod graph;
+mod hull;
+mod shapes;
+mod solids;
+
+pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
+pub use graph::{HullGraph, graph_len};
+pub use hull::{Hull, Points};
+pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
+pub use solids::{Capsule, Cone, Cylinder};
+
+/// A support function gave up; the number is the caller's own code (never zero).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failure(pub i32);
+
+/// A compact convex set `core + radius * ball` in R^N, given by its support mapping.
+///
+/// Implement it for your own shapes: only [`support`](Support::support) is required. All lengths are in
+/// the caller's unit; the solver is invariant to it.
+pub trait Support<T: Real, const N: usize> {
+    /// A point of the core that is farthest along `u`. `u` is finite and not zero; it need not be a unit vector.
+    ///
+    /// # Errors
+    /// A [`Failure`] ends the query with outcome `SupportFailed`, a true bracket and the code.
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure>;
+
+    /// The same with a *witness*: for a difference of two bodies the point of the first one. Elsewhere the
+    /// point itself.
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let p = self.support(u)?;
+        Ok((p, p))
+    }
+
+    /// Support without shortcuts, for the direction that is about to be reported. Only sets whose
+    /// [`support`](Support::support) takes shortcuts (hill climbing) differ.
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.support(u)
+    }
+
+    /// Does [`exhaustive`](Support::exhaustive) differ from [`support`](Support::support)?
+    fn has_shortcuts(&self) -> bool {
+        false
+    }
+
+    /// Radius of the ball swept over the core, >= 0.
+    fn radius(&self) -> T {
+        T::zero()
+    }
+
+    /// An upper bound of |x| over the core, or 0 when it is not known. Rounding margins scale with it; where
+    /// it is not known the solver takes the largest norm it has seen.
+    fn extent(&self) -> T {
+        T::zero()
+    }
+
+    /// The rounding error e of the promise above, as a length. The default, `16 N u extent`, covers a
+    /// support mapping that does a few operations on coordinates of size `extent` (u: unit roundoff).
+    fn error(&self) -> T {
+        T::count(16 * N) * T::ROUNDOFF * self.extent()
+    }
+}

@@ -1,0 +1,431 @@
+//! Shapes of any dimension, and the few lines of careful arithmetic that all shapes share.
+//!
+//! All shapes are centred at the origin with their axes along the coordinates; place them with
+//! [`Rigid`](super::Rigid) or [`Linear`](super::Linear). A size may be zero: flat shapes are legal. A size may
+//! be at most `HUGE * ROUNDOFF` (2e31 in `f32`, 2e292 in `f64`), so that no sum of sizes overflows. Below
+//! `floor / ROUNDOFF` (1e-23 in `f32`, 1e-275 in `f64`) a non-zero size is legal, but its error bound may underflow.
+//!
+//! # Long and short directions
+//!
+//! A direction need not be a unit vector, and its squares may leave the range of the format. Each shape
+//! tests one sum that it has at hand, and takes a rescaled direction in a cold path when it is out of range. That
+//! branch is always predicted; scaling every direction would cost a division.
+
+use super::{Failure, Support};
+use crate::scalar::{Real, Vector};
+
+/// Why a shape cannot be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeError {
+    /// A size is less than zero.
+    Negative,
+    /// A number is not finite, or so large that sums of sizes could overflow.
+    NonFinite,
+    /// A list of points is empty, or a gauge set is the origin alone.
+    Empty,
+    /// A rotation matrix is farther than 1e-3 from orthonormal: use [`Linear`](super::Linear).
+    NotOrthonormal,
+}
+
+/// Squares and products below this lose digits to underflow: 8e-31 in `f32`, 8e-292 in `f64`.
+#[inline(always)]
+fn floor<T: Real>() -> T {
+    T::of(16.0) / (T::HUGE * T::ROUNDOFF)
+}
+
+/// The largest size: sums of many of them, even times 1/ROUNDOFF, stay finite.
+#[inline(always)]
+fn ceiling<T: Real>() -> T {
+    T::HUGE * T::ROUNDOFF
+}
+
+/// |x| without a call.
+#[inline(always)]
+pub(crate) fn magnitude<T: Real>(x: T) -> T {
+    x.at_least(-x)
+}
+
+/// `size` with the sign of `x` (plus for zero), without a branch.
+#[inline(always)]
+pub(crate) fn signed<T: Real>(size: T, x: T) -> T {
+    if x < T::zero() { -size } else { size }
+}
+
+/// max |x_i|.
+#[inline(always)]
+pub(crate) fn largest<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+    v.iter().fold(T::zero(), |m, &x| m.at_least(magnitude(x)))
+}
+
+/// A list of sizes is usable: each finite, not too large, >= 0.
+pub(crate) fn check_sizes<'a, T: Real>(mut sizes: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
+    sizes.try_for_each(|&x| {
+        check_numbers(core::iter::once(&x))?;
+        if x < T::zero() { Err(ShapeError::Negative) } else { Ok(()) }
+    })
+}
+
+/// A list of coordinates is usable: each finite and not too large.
+pub(crate) fn check_numbers<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
+    // NaN fails the comparison, so there is no test for it.
+    let usable = |&x: &T| magnitude(x) <= ceiling() && x.finite();
+    if numbers.all(usable) { Ok(()) } else { Err(ShapeError::NonFinite) }
+}
+
+/// Do products of `u` with coordinates of size up to `size` neither overflow nor lose digits that count?
+#[inline(always)]
+pub(crate) fn in_range<T: Real, const N: usize>(u: &Vector<T, N>, size: T) -> bool {
+    let s = u.iter().fold(-T::zero(), |s, &x| s + magnitude(x)) * size;
+    s > floor() && s < ceiling()
+}
+
+/// A positive multiple of `u` for which [`in_range`] holds (unless `u` or `size` is zero).
+#[cold]
+#[inline(never)]
+pub(crate) fn rescaled<T: Real, const N: usize>(u: &Vector<T, N>, size: T) -> Vector<T, N> {
+    let m = largest(u);
+    if m > T::zero() {
+        // Divided by, not multiplied with 1/m: that overflows for subnormal m.
+        let r = T::ROUNDOFF * T::ROUNDOFF;
+        let lift = if size < T::one() { T::one() / (r * r) } else { T::one() };
+        u.map(|x| x / m * lift)
+    } else {
+        *u
+    }
+}
+
+/// w / |w| with relative error (N/2 + 4) roundoff for every finite `w`; zero for zero.
+#[inline(always)]
+pub(crate) fn unit<T: Real, const N: usize>(w: &Vector<T, N>) -> Vector<T, N> {
+    let s = w.dot(w);
+    if s > floor() && s < T::HUGE { w * (T::one() / s.root()) } else { unit_out_of_range(w) }
+}
+
+#[cold]
+#[inline(never)]
+fn unit_out_of_range<T: Real, const N: usize>(w: &Vector<T, N>) -> Vector<T, N> {
+    let m = largest(w);
+    if m > T::zero() {
+        let v = w.map(|x| x / m);
+        v * (T::one() / v.dot(&v).root())
+    } else {
+        Vector::zeros()
+    }
+}
+
+/// An upper bound of |v|, tight to a few roundoffs, for every finite `v`.
+#[inline]
+pub(crate) fn length<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+    let s = v.dot(v);
+    let l = if s > floor() && s < T::HUGE {
+        s.root()
+    } else {
+        let m = largest(v);
+        if m > T::zero() {
+            let w = v.map(|x| x / m);
+            m * w.dot(&w).root()
+        } else {
+            T::zero()
+        }
+    };
+    above(l, N)
+}
+
+/// Slightly more than `x`: covers a result of `n` additions and a few other operations.
+#[inline(always)]
+pub(crate) fn above<T: Real>(x: T, n: usize) -> T {
+    x * (T::one() + T::count(n + 8) * T::ROUNDOFF)
+}
+
+/// A single point. Exact: `error` is 0.
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{Point, Support}};
+/// let p = Point::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
+/// assert_eq!(p.support(&Vector::from([1.0, 0.0, 0.0])).unwrap()[2], 3.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<T, const N: usize> {
+    at: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Point<T, N> {
+    /// The point `at`.
+    ///
+    /// # Errors
+    /// [`ShapeError::NonFinite`].
+    pub fn new(at: Vector<T, N>) -> Result<Self, ShapeError> {
+        check_numbers(at.iter())?;
+        Ok(Self { at })
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for Point<T, N> {
+    #[inline]
+    fn support(&self, _: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.at)
+    }
+    fn extent(&self) -> T {
+        length(&self.at)
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// A ball of any dimension around the origin: its core is the origin. Exact: `error` is 0.
+///
+/// ```
+/// use qdist::support::{Sphere, Support};
+/// let s = Sphere::<f64, 3>::new(0.5).unwrap();
+/// assert_eq!(s.radius(), 0.5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere<T, const N: usize> {
+    radius: T,
+}
+
+impl<T: Real, const N: usize> Sphere<T, N> {
+    /// The ball of radius `radius` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
+    pub fn new(radius: T) -> Result<Self, ShapeError> {
+        check_sizes(core::iter::once(&radius))?;
+        Ok(Self { radius })
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
+    #[inline]
+    fn support(&self, _: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(Vector::zeros())
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        self.radius
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// A box [-h_1, h_1] x ... x [-h_N, h_N]. A vertex is chosen by signs alone, so `error` is 0 for every direction.
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{BoxShape, Support}};
+/// let b = BoxShape::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
+/// assert_eq!(b.support(&Vector::from([1.0, -1.0, 1e-30])).unwrap(), Vector::from([1.0, -2.0, 3.0]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxShape<T, const N: usize> {
+    half: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> BoxShape<T, N> {
+    /// The box of half extents `half` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
+    pub fn new(half: Vector<T, N>) -> Result<Self, ShapeError> {
+        check_sizes(half.iter())?;
+        Ok(Self { half })
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.half.zip_map(u, signed))
+    }
+    fn extent(&self) -> T {
+        length(&self.half)
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// An ellipsoid with its axes along the coordinates: `{D x : |x| <= 1}` with D the diagonal matrix of the semi axes,
+/// so `s(u) = D D u / |D u|`. One square root and one division.
+///
+/// `error`: the coordinates of the point have relative error at most (N/2 + 6) roundoff: one for D u, N/2 + 1 for
+/// the squared norm under the root, one each for root, reciprocal and two products. The exact point is at most
+/// max(D) long, hence `(N + 8) u max(D)`; in the cold path underflow adds less than roundoff.
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{Ellipsoid, Support}};
+/// let e = Ellipsoid::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
+/// assert_eq!(e.support(&Vector::from([0.0, 5.0, 0.0])).unwrap(), Vector::from([0.0, 2.0, 0.0]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid<T, const N: usize> {
+    semi: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Ellipsoid<T, N> {
+    /// The ellipsoid of semi axes `semi` >= 0 along the coordinates.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
+    pub fn new(semi: Vector<T, N>) -> Result<Self, ShapeError> {
+        check_sizes(semi.iter())?;
+        Ok(Self { semi })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn out_of_range(&self, u: &Vector<T, N>) -> Vector<T, N> {
+        let size = largest(&self.semi);
+        if size > T::zero() {
+            // Both factors at most 1: what underflows now is far below roundoff relative to |u| max(D).
+            let u = rescaled(u, T::one());
+            let w = self.semi.zip_map(&u, |d, x| d / size * x);
+            self.semi.component_mul(&unit(&w))
+        } else {
+            Vector::zeros()
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        let w = self.semi.component_mul(u);
+        let s = w.dot(&w);
+        if s > floor() && s < T::HUGE {
+            let inverse = T::one() / s.root();
+            Ok(self.semi.zip_map(&w, |d, x| d * (x * inverse)))
+        } else {
+            Ok(self.out_of_range(u))
+        }
+    }
+    fn extent(&self) -> T {
+        largest(&self.semi)
+    }
+    fn error(&self) -> T {
+        T::count(N + 8) * T::ROUNDOFF * largest(&self.semi)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A small generator: the tests must not depend on a crate or on the clock.
+    struct Dice(u64);
+
+    impl Dice {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((self.0 >> 11) as f64) / ((1u64 << 53) as f64) * 2.0 - 1.0
+        }
+        /// Coordinates of very different sizes, some zero, times `size`.
+        fn direction(&mut self, size: f64) -> [f64; 3] {
+            [0; 3].map(|_| {
+                let s = self.next();
+                let x = self.next() * 10f64.powf(5.0 * (s - 1.0));
+                size * if s.abs() < 0.05 { 0.0 } else { x }
+            })
+        }
+    }
+
+    const SIZES: [[f64; 3]; 6] =
+        [[1.0, 2.0, 3.0], [1e-9, 1.0, 1e9], [0.0, 0.0, 0.0], [0.0, 1e-9, 1.0], [1e9, 1e9, 1e-9], [1e-9, 1e-9, 2e-9]];
+
+    /// |D u| / scale of u, and the farthest point, in `f64` with the sizes and the direction scaled.
+    fn ellipsoid_value(d: &[f64; 3], u: &[f64; 3]) -> f64 {
+        let m = u.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        m * (0..3).map(|i| (d[i] * (u[i] / m)).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn ellipsoid_keeps_its_promise_in_f32() {
+        let mut dice = Dice(1);
+        for d in SIZES {
+            let d32 = d.map(|x| x as f32);
+            let d = d32.map(f64::from);
+            let e = Ellipsoid::new(Vector::from(d32)).unwrap();
+            for scale in [1.0, 1e-15, 1e-22, 1e30] {
+                for _ in 0..2000 {
+                    let u32 = dice.direction(scale).map(|x| x as f32);
+                    let u = u32.map(f64::from);
+                    let n = u.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    if n == 0.0 {
+                        continue;
+                    }
+                    let p = e.support(&Vector::from(u32)).unwrap();
+                    assert!(finite_all(&p));
+                    let up: f64 = (0..3).map(|i| u[i] * f64::from(p[i])).sum();
+                    let bound = f64::from(e.error());
+                    assert!(up >= ellipsoid_value(&d, &u) - bound * n, "{d:?} {u:?} {p:?}");
+                    // In the set, up to the error: the nearest point on the ray to p is in it.
+                    let g =
+                        (0..3).filter(|&i| d[i] > 0.0).map(|i| (f64::from(p[i]) / d[i]).powi(2)).sum::<f64>().sqrt();
+                    let length = p.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+                    assert!((g - 1.0).max(0.0) * length <= bound + 1e-40);
+                }
+            }
+        }
+    }
+
+    fn finite_all(p: &Vector<f32, 3>) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+
+    #[test]
+    fn ellipsoid_takes_extreme_directions_in_f64() {
+        for s in [1e-300, 1e-30, 1.0, 1e30, 1e300, 5e-324] {
+            let e = Ellipsoid::new(Vector::from([1e-9, 1e9, 1.0])).unwrap();
+            let p = e.support(&Vector::from([0.0, 0.0, s])).unwrap();
+            assert!((p - Vector::from([0.0, 0.0, 1.0])).norm() < 1e-14, "{s} {p}");
+        }
+        let flat = Ellipsoid::new(Vector::from([0.0, 2.0])).unwrap();
+        assert_eq!(flat.support(&Vector::from([1.0, 0.0])).unwrap(), Vector::from([0.0, 0.0]));
+    }
+
+    #[test]
+    fn box_is_exact() {
+        let mut dice = Dice(2);
+        for d in SIZES {
+            let b = BoxShape::new(Vector::from(d)).unwrap();
+            for scale in [1.0, 1e-30, 1e30] {
+                for _ in 0..500 {
+                    let u = dice.direction(scale);
+                    let p = b.support(&Vector::from(u)).unwrap();
+                    for i in 0..3 {
+                        assert_eq!(p[i] * u[i], d[i] * u[i].abs());
+                        assert_eq!(p[i].abs(), d[i]);
+                    }
+                }
+            }
+            assert!(b.extent() >= d.iter().map(|x| x * x).sum::<f64>().sqrt());
+        }
+    }
+
+    #[test]
+    fn point_and_sphere() {
+        let p = Point::new(Vector::from([3.0f32, -4.0])).unwrap();
+        assert!(p.extent() >= 5.0 && p.extent() < 5.001);
+        let s = Sphere::<f32, 2>::new(0.0).unwrap();
+        assert_eq!(s.support(&Vector::from([1.0, 1.0])).unwrap(), Vector::from([0.0, 0.0]));
+    }
+
+    #[test]
+    fn constructors_refuse() {
+        assert_eq!(Sphere::<f64, 3>::new(-1.0), Err(ShapeError::Negative));
+        assert_eq!(Sphere::<f32, 3>::new(f32::NAN), Err(ShapeError::NonFinite));
+        assert_eq!(BoxShape::new(Vector::from([1.0f32, f32::MAX])), Err(ShapeError::NonFinite));
+        assert_eq!(Point::new(Vector::from([f64::INFINITY])), Err(ShapeError::NonFinite));
+        assert!(Ellipsoid::new(Vector::from([0.0f32, 0.0])).is_ok());
+    }
+
+    #[test]
+    fn lengths_are_upper_bounds_at_any_size() {
+        for s in [1e-44f32, 1e-30, 1e-10, 1.0, 1e20, 1e30] {
+            let l = f64::from(length(&Vector::from([3.0 * s, 4.0 * s])));
+            let exact = (f64::from(3.0 * s).powi(2) + f64::from(4.0 * s).powi(2)).sqrt();
+            assert!(l >= exact * (1.0 - 1e-9) - 1e-45 && l <= exact * 1.00001 + 3e-45, "{s} {l} {exact}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Memory: one layout, placed in the caller's memory or owned by a const-generic struct.
+
+use crate::polytope::{Entry, Facet, Polytope, Vertex};
+use crate::scalar::Real;
+use crate::solver::Solver;
+use core::mem::{MaybeUninit, align_of, size_of};
+
+/// The largest number of vertices or facets.
+pub const MAX_CAPACITY: usize = u16::MAX as usize;
+
+/// Why memory cannot hold a solver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkspaceError {
+    /// `max_vertices` < N + 1, `max_facets` < 2 N, or one of them above [`MAX_CAPACITY`].
+    Capacity,
+    /// The memory is shorter than [`Layout::bytes`].
+    Size,
+    /// The memory is not aligned to [`Layout::ALIGN`].
+    Alignment,
+}
+
+/// Where vertices, facets and queue lie in one block of memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    vertices: usize,
+    facets: usize,
+    facets_at: usize,
+    queue_at: usize,
+    bytes: usize,
+}
+
+impl Layout {
+    /// Alignment of the block, in bytes.
+    pub const ALIGN: usize = 8;
+
+    /// The layout for these capacities: 2 N scalars a vertex, N + 2 scalars and 4 N + 3 bytes a facet (rounded up to the scalar),
+    /// two scalars a queue entry, one entry a facet.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Capacity`].
+    pub const fn new<T: Real, const N: usize>(max_vertices: usize, max_facets: usize) -> Result<Self, WorkspaceError> {
+        if max_vertices < N + 1 || max_facets < 2 * N || max_vertices > MAX_CAPACITY || max_facets > MAX_CAPACITY {
+            return Err(WorkspaceError::Capacity);
+        }
+        // All three types have the alignment of T and sizes that are multiples of it.
+        let facets_at = max_vertices * size_of::<Vertex<T, N>>();
+        let queue_at = facets_at + max_facets * size_of::<Facet<T, N>>();
+        let bytes = queue_at + max_facets * size_of::<Entry<T>>();
+        Ok(Layout { vertices: max_vertices, facets: max_facets, facets_at, queue_at, bytes })
+    }
+
+    /// Size of the block in bytes.
+    pub const fn bytes(&self) -> usize {
+        self.bytes
+    }
+}
+
+/// Places a solver in caller memory, which it borrows.
+///
+/// # Errors
+/// [`WorkspaceError`]; the memory is not touched then.
+pub fn place<T: Real, const N: usize>(
+    memory: &mut [MaybeUninit<u8>],
+    max_vertices: usize,
+    max_facets: usize,
+) -> Result<Solver<'_, T, N>, WorkspaceError> {
+    let layout = Layout::new::<T, N>(max_vertices, max_facets)?;
+    if memory.len() < layout.bytes {
+        return Err(WorkspaceError::Size);
+    }
+    if !memory.as_ptr().cast::<u8>().addr().is_multiple_of(Layout::ALIGN) {
+        return Err(WorkspaceError::Alignment);
+    }
+    // SAFETY: the block is long enough and aligned, it is borrowed mutably for the solver's life, and `initialize`
+    // writes every element before `open` reads it.
+    unsafe {
+        let base = memory.as_mut_ptr().cast::<u8>();
+        initialize::<T, N>(base, &layout);
+        Ok(open(base, &layout))
+    }
+}
+
+/// Writes every element of the block once.
+///
+/// # Safety
+/// `base` is valid for writes of `layout.bytes` bytes and aligned to [`Layout::ALIGN`].
+pub(crate) unsafe fn initialize<T: Real, const N: usize>(base: *mut u8, layout: &Layout) {
+    const { assert!(align_of::<Facet<T, N>>() <= Layout::ALIGN && align_of::<Vertex<T, N>>() <= Layout::ALIGN) };
+    // SAFETY: the offsets and counts are those of the layout.
+    unsafe {
+        let vertices = base.cast::<Vertex<T, N>>();
+        for i in 0..layout.vertices {
+            vertices.add(i).write(Vertex::empty());
+        }
+        let facets = base.add(layout.facets_at).cast::<Facet<T, N>>();
+        for i in 0..layout.facets {
+            facets.add(i).write(Facet::empty());
+        }
+        let queue = base.add(layout.queue_at).cast::<Entry<T>>();
+        for i in 0..layout.facets {
+            queue.add(i).write(Entry::EMPTY);
+        }
+    }
+}
+
+/// A solver over a block that [`initialize`] has written.
+///
+/// # Safety
+/// The block was initialised for the same T, N and layout, and is not used otherwise for the life `'w`.
+pub(crate) unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &Layout) -> Solver<'w, T, N> {
+    use core::slice::from_raw_parts_mut;
+    // SAFETY: three disjoint parts of an initialised block.
+    unsafe {
+        let vertices = from_raw_parts_mut(base.cast(), layout.vertices);
+        let facets = from_raw_parts_mut(base.add(layout.facets_at).cast(), layout.facets);
+        let queue = from_raw_parts_mut(base.add(layout.queue_at).cast(), layout.facets);
+        Solver { polytope: Polytope::new(vertices, facets, queue) }
+    }
+}
+
+/// A solver's memory as a value: `V` vertices and `F` facets, for a `static` or the stack.
+///
+/// ```
+/// use qdist::{Workspace, support::BoxShape, qset::Ball, Options};
+/// let mut memory = Workspace::<f64, 3, 64, 128>::new();
+/// let cuboid = BoxShape::new([1.0, 2.0, 3.0]).unwrap();
+/// let answer = memory.solver().solve(&cuboid, &Ball::unit(), &Options::default());
+/// assert!(answer.lower <= 1.0 && 1.0 <= answer.upper);
+/// ```
+pub struct Workspace<T, const N: usize, const V: usize, const F: usize> {
+    vertices: [Vertex<T, N>; V],
+    facets: [Facet<T, N>; F],
+    queue: [Entry<T>; F],
+}
+
+impl<T: Real, const N: usize, const V: usize, const F: usize> Workspace<T, N, V, F> {
+    /// Fresh memory. `V` >= N + 1 and `F` >= 2 N are checked when this is compiled.
+    pub fn new() -> Self {
+        const { assert!(Layout::new::<T, N>(V, F).is_ok(), "V >= N + 1, F >= 2 N, both below 65536") };
+        Workspace { vertices: [Vertex::empty(); V], facets: [Facet::empty(); F], queue: [Entry::EMPTY; F] }
+    }
+
+    /// A solver that borrows this memory.
+    pub fn solver(&mut self) -> Solver<'_, T, N> {
+        Solver { polytope: Polytope::new(&mut self.vertices, &mut self.facets, &mut self.queue) }
+    }
+}
+
+impl<T: Real, const N: usize, const V: usize, const F: usize> Default for Workspace<T, N, V, F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
