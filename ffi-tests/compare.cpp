@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <functional>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -129,8 +128,8 @@ private:
         uint32_t bytes = 0;
         qdist_status status = Q::workspace_query(3, count, facets, &bytes);
         if (status != QDIST_OK) return status;
-        static_assert(QDIST_WORKSPACE_ALIGN <= alignof(std::max_align_t), "operator new aligns enough");
-        std::vector<std::max_align_t> memory(bytes / sizeof(std::max_align_t) + 1);
+        static_assert(QDIST_WORKSPACE_ALIGN <= __STDCPP_DEFAULT_NEW_ALIGNMENT__, "operator new aligns enough");
+        std::vector<unsigned char> memory(bytes);
         qdist_solver *solver = nullptr;
         status = Q::solver_init(memory.data(), bytes, count, facets, &solver);
         if (status != QDIST_OK) return status;

@@ -106,11 +106,9 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         let offset = b.translation - a.translation;
         let cores = a.extent()? + b.extent()?;
         let apart = norm(&offset);
-        // Each shape's own error, doubled for rotations that are off by 1e-4; the two rotations there and back, the
-        // subtraction, and the rounding of `offset` itself: fewer than 16 operations on numbers of this size.
-        let own = (a.shape.error() + b.shape.error()) * T::count(2);
-        let error = own + (cores * T::count(32) + apart * T::count(4)) * T::ROUNDOFF;
-        Ok(Pair { a, b, offset, extent: cores * T::of(1.001) + apart, error })
+        let error = (a.shape.error() + b.shape.error() + (cores * T::count(20) + apart * T::count(3)) * T::ROUNDOFF)
+            * T::of(1.01);
+        Ok(Pair { a, b, offset, extent: cores * T::of(1.01) + apart, error })
     }
 
     fn sample(&self, u: &Vector<T, 3>, exhaustive: bool) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {

@@ -51,7 +51,7 @@ pub fn nearest<T: Real, const N: usize>(
             inside = true;
             break;
         }
-        let direction = simplex.point() * (-T::one() / distance);
+        let direction = simplex.towards_origin(distance, reach);
         let vertex = support(&direction)?;
         let height = direction.dot(&vertex.point);
         reach = reach.at_least(norm(&vertex.point));

@@ -117,6 +117,25 @@ impl<T: Real, const N: usize> Simplex<T, N> {
         self.corners.len() <= N && self.corners.push(Corner { vertex, weight: T::zero() }).is_ok()
     }
 
+    /// Unit vector from the simplex's point, at `distance`, towards the origin.
+    ///
+    /// The point is known to a roundoff of the vertices' norms, so close to the origin its direction is not. But the
+    /// direction is orthogonal to the simplex, whose edges are long: what cancellation left along them is taken out.
+    pub(crate) fn towards_origin(&self, distance: T, reach: T) -> Vector<T, N> {
+        let rough = self.point() * (-T::one() / distance);
+        let Some((first, rest)) = self.corners.split_first() else { return rough };
+        if rest.is_empty() || distance > reach * T::of(1e-2) {
+            return rough;
+        }
+        let mut edges = Edges::<T, N>::new();
+        for corner in rest {
+            edges.push(&(corner.vertex.point - first.vertex.point), T::zero());
+        }
+        let exact = edges.complement(&edges.complement(&rough));
+        let length = norm(&exact);
+        if length > T::of(0.1) { exact * (T::one() / length) } else { rough }
+    }
+
     /// Moves the weights to the point of the simplex nearest to the origin and drops the corners that it does not
     /// need (Wolfe's minor cycle: minimise over the affine hull; while that leaves the simplex, walk to its
     /// boundary and drop what vanished). False when the corners are affinely dependent up to
@@ -166,12 +185,28 @@ impl<T: Real, const N: usize> Simplex<T, N> {
                 return None;
             }
         }
-        // v_0 + Q R x nearest to 0: R x = -Q^T v_0.
+        // v_0 + Q R x nearest to 0: R x = -Q^T v_0; then the same for what rounding left, which thin simplices need.
         let mut x = [T::zero(); N];
-        for i in 0..N {
-            x[i] = -edges.q[i].dot(&base);
+        let mut point = base;
+        for _ in 0..2 {
+            let mut step = [T::zero(); N];
+            for i in 0..N {
+                step[i] = -edges.q[i].dot(&point);
+            }
+            edges.back_substitute(&mut step);
+            for i in 0..N {
+                x[i] += step[i];
+            }
+            point = base;
+            for (i, corner) in self.corners.iter().skip(1).enumerate() {
+                if let Some(&along) = x.get(i) {
+                    point += (corner.vertex.point - base) * along;
+                }
+            }
+            if point.dot(&point) > base.dot(&base) * T::of(1e-6) {
+                break;
+            }
         }
-        edges.back_substitute(&mut x);
         let mut first = T::one();
         for i in 0..N {
             if i < edges.count {

@@ -34,7 +34,7 @@ impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
     }
 }
 
-/// The Euclidean ball, `h = radius |u|`: with radius 1, d_Q is the ordinary penetration depth (paper, eq. 24).
+/// The Euclidean ball, `h = radius |u|`: with radius 1, d_Q is the ordinary penetration depth (paper, eq. 16).
 ///
 /// `error`: N/2 + 1 roundoffs of the norm, one of the product: `(N + 4) u radius`.
 ///
@@ -213,7 +213,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
 }
 
 /// The segment from the origin to `end`: `h = max(0, u.end)`. d_Q is then the length, in units of `end`, of the ray from the
-/// origin along `end` until it leaves A.
+/// origin along `end` until it leaves A (paper, ray shooting, after eq. 16).
 ///
 /// `error`: N roundoffs of the product: `(N + 1) u |end|`.
 ///

@@ -307,7 +307,7 @@ fn pair_error<T: Real>(errors: T, extents: T) -> T {
 }
 
 /// The Minkowski difference `{x - y : x in a, y in b}` of two bodies: it contains the origin exactly when they overlap
-/// (paper, section II). Ball terms add up. The witness is the core point of `a`.
+/// with their ball terms. Ball terms add up. The witness is the core point of `a`.
 ///
 /// `error` as for [`Sum`].
 ///
