@@ -13,7 +13,7 @@
 
 namespace {
 
-void set_overlap(Answer &answer, double depth, double nx, double ny, double nz) {
+void set_answer(Answer &answer, double depth, double nx, double ny, double nz) {
     answer.set_outcome(std::isfinite(depth) ? "ok" : "nan");
     answer.depth = depth;
     answer.normal[0] = nx;
@@ -23,7 +23,7 @@ void set_overlap(Answer &answer, double depth, double nx, double ny, double nz) 
 
 // ---------------------------------------------------------------------------------------------------- libccd shapes
 
-// From this many vertices on, hulls are searched by walking over edges; FCL switches at the same number.
+// Hulls with more vertices are searched by walking over edges. FCL switches at the same number.
 constexpr std::size_t LINEAR_SCAN_MAX = 32;
 
 struct CcdShape {
@@ -205,7 +205,7 @@ public:
         ccd_vec3_t direction, position;
         const int code = penetration(&a_, &b_, &ccd_, &depth, &direction, &position);
         if (code == 0)  // libccd: "if obj2 is translated by depth in direction dir, objects will have touching contact"
-            set_overlap(answer, depth, direction.v[0], direction.v[1], direction.v[2]);
+            set_answer(answer, depth, direction.v[0], direction.v[1], direction.v[2]);
         else if (code == -1)
             answer.set_outcome("no_collision");
         else
@@ -278,7 +278,7 @@ public:
             return;
         }
         const fcl::Contactd &contact = result.getContact(0);  // normal: from object 1 to object 2
-        set_overlap(answer, contact.penetration_depth, contact.normal[0], contact.normal[1], contact.normal[2]);
+        set_answer(answer, contact.penetration_depth, contact.normal[0], contact.normal[1], contact.normal[2]);
     }
 
 private:
@@ -287,7 +287,7 @@ private:
 
 class FclSigned final : public FclQuery {
 public:
-    explicit FclSigned(const Case &c) : FclQuery(c) {
+    explicit FclSigned(const Case &c) : FclQuery(c), rounding_(1e-12 * c.size) {
         request_.enable_nearest_points = true;  // the normal comes from them
         request_.enable_signed_distance = true;
         request_.distance_tolerance = 1e-6;  // FCL's default
@@ -297,15 +297,18 @@ public:
     void run(Answer &answer) override {
         fcl::DistanceResultd result;
         fcl::distance(a_.get(), pose_a_, b_.get(), pose_b_, request_, result);
-        // FCL gives no normal. Point of A minus point of B is depth * normal, apart and overlapping alike.
+        // FCL gives no normal. Point of A minus point of B is depth * normal, apart and overlapping alike. A gap that
+        // is rounding error has no direction; none is better than one that FCL has never claimed.
         const double depth = -result.min_distance;
         const fcl::Vector3d gap = result.nearest_points[0] - result.nearest_points[1];
-        const fcl::Vector3d normal = (depth < 0 ? -gap : gap) / gap.norm();
-        set_overlap(answer, depth, normal[0], normal[1], normal[2]);
+        const double length = gap.norm();
+        const fcl::Vector3d normal = gap / (length <= rounding_ ? NAN : std::copysign(length, depth));
+        set_answer(answer, depth, normal[0], normal[1], normal[2]);
     }
 
 private:
     fcl::DistanceRequestd request_;
+    double rounding_;
 };
 
 }  // namespace

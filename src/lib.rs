@@ -10,7 +10,7 @@ mod distance;
 mod polytope;
 pub mod qset;
 mod query;
-mod scalar;
+pub mod scalar;
 pub mod simplex;
 pub mod solver;
 pub mod support;

@@ -19,6 +19,10 @@ pub trait Real: RealField + Copy {
     /// The default relative tolerance of a query: 1e-6 in `f64`, 1e-4 in `f32`.
     const RELATIVE_TOLERANCE: Self;
 
+    /// 2^ceil(p/2) + 1 for p bits of mantissa: Veltkamp's constant, which splits a number in two halves whose products are
+    /// exact.
+    const SPLIT: Self;
+
     /// Correctly rounded square root; the argument must not be negative.
     fn root(self) -> Self;
     /// Nearest `f64`, for reports and constants.
@@ -45,11 +49,12 @@ pub trait Real: RealField + Copy {
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:path, $tolerance:expr) => {
+    ($t:ident, $sqrt:path, $tolerance:expr, $split:expr) => {
         impl Real for $t {
             const ROUNDOFF: Self = $t::EPSILON / 2.0;
             const HUGE: Self = $t::MAX;
             const RELATIVE_TOLERANCE: Self = $tolerance;
+            const SPLIT: Self = $split;
 
             #[inline(always)]
             fn root(self) -> Self {
@@ -74,8 +79,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sqrtf, 1e-4);
-real!(f64, libm::sqrt, 1e-6);
+real!(f32, libm::sqrtf, 1e-4, 4097.0);
+real!(f64, libm::sqrt, 1e-6, 134_217_729.0);
 
 /// Euclidean norm.
 #[inline(always)]
@@ -87,4 +92,42 @@ pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
 #[inline]
 pub fn finite<T: Real, const N: usize>(v: &Vector<T, N>) -> bool {
     v.iter().all(|x| x.finite())
+}
+
+/// A sum that carries its rounding error along (Ogita, Rump & Oishi: as accurate as in twice the precision).
+#[derive(Clone, Copy)]
+pub(crate) struct Accumulator<T> {
+    sum: T,
+    error: T,
+}
+
+impl<T: Real> Accumulator<T> {
+    pub fn new(start: T) -> Self {
+        Accumulator { sum: start, error: T::zero() }
+    }
+
+    /// Adds a number.
+    pub fn add(&mut self, x: T) {
+        let sum = self.sum + x;
+        let virtual_x = sum - self.sum;
+        self.error += (self.sum - (sum - virtual_x)) + (x - virtual_x);
+        self.sum = sum;
+    }
+
+    /// Adds a product.
+    pub fn add_product(&mut self, a: T, b: T) {
+        let halves = |x: T| {
+            let c = T::SPLIT * x;
+            let high = c - (c - x);
+            (high, x - high)
+        };
+        let product = a * b;
+        let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
+        self.error += a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2);
+        self.add(product);
+    }
+
+    pub fn value(&self) -> T {
+        self.sum + self.error
+    }
 }

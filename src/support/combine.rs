@@ -68,6 +68,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn extent(&self) -> T {
         (**self).extent()
     }
+    fn center(&self) -> Option<(Vector<T, N>, T)> {
+        (**self).center()
+    }
     fn error(&self) -> T {
         (**self).error()
     }

@@ -25,7 +25,8 @@ fn better<'a, T: Real, const N: usize>(a: Candidate<'a, T, N>, b: Candidate<'a, 
 /// the first point wins, so that the answer does not depend on rounding in other points.
 ///
 /// `error`: the point is exact. Each product has error at most `N u |u| |p|`, and a choice compares two of them:
-/// `2 (N + 1) u extent`.
+/// `2 (N + 1) u extent`. Points far from the origin compared with their spread are measured from the first of them (which costs N
+/// subtractions a point): then `2 (N + 2) u spread`.
 ///
 /// ```
 /// use qdist::{scalar::Vector, support::{Points, Support}};
@@ -38,6 +39,8 @@ pub struct Points<'a, T, const N: usize> {
     points: &'a [[T; N]],
     first: &'a [T; N],
     extent: T,
+    /// Largest distance from `first`, where that is what products are measured by.
+    spread: Option<T>,
 }
 
 impl<'a, T: Real, const N: usize> Points<'a, T, N> {
@@ -50,13 +53,24 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
         check_numbers(points.iter().flatten())?;
         // The norms of points scaled by the largest coordinate: no square overflows, none that counts underflows.
         let size = points.iter().flatten().fold(T::zero(), |m, &x| m.at_least(x).at_least(-x));
-        let extent = if size > T::zero() {
-            let scale = |p: &[T; N]| length(&Vector::<T, N>::from(*p).map(|x| x / size));
-            above(size * points.iter().fold(T::zero(), |m, p| m.at_least(scale(p))), 0)
-        } else {
-            T::zero()
+        let reach = |from: Vector<T, N>| {
+            let scale = |p: &[T; N]| length(&(Vector::from(*p) - from).map(|x| x / size));
+            above(size * points.iter().fold(T::zero(), |m, p| m.at_least(scale(p))), 2)
         };
-        Ok(Self { points, first, extent })
+        let extent = if size > T::zero() { reach(Vector::zeros()) } else { T::zero() };
+        let spread = if size > T::zero() { reach(Vector::from(*first)) } else { T::zero() };
+        let spread = (spread * T::count(4) < extent).then_some(spread);
+        Ok(Self { points, first, extent, spread })
+    }
+
+    /// What the scan compares: u.p, or u.(p - first) where that is more accurate.
+    #[inline(always)]
+    fn height(&self, u: &Vector<T, N>, p: &[T; N]) -> T {
+        if self.spread.is_none() {
+            return product(u, p);
+        }
+        let terms = u.iter().zip(p.iter().zip(self.first));
+        terms.fold(-T::zero(), |s, (&a, (&x, &c))| s + a * (x - c))
     }
 
     /// The points.
@@ -69,10 +83,20 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
     /// would make every point wait for the one before it, and selecting points instead of indices is a fifth slower.
     #[inline(always)]
     fn scan(&self, u: &Vector<T, N>) -> &'a [T; N] {
+        // Two copies of the loop, each with one way to measure.
+        if self.spread.is_none() {
+            self.scan_by(|p| product(u, p))
+        } else {
+            self.scan_by(|p| self.height(u, p))
+        }
+    }
+
+    #[inline(always)]
+    fn scan_by(&self, height: impl Fn(&[T; N]) -> T) -> &'a [T; N] {
         let mut best = (-T::HUGE, self.first);
         let (fours, rest) = self.points.as_chunks::<4>();
         for four in fours {
-            let [a, b, c, d] = four.each_ref().map(|p| product(u, p));
+            let [a, b, c, d] = four.each_ref().map(&height);
             let (left, i) = (a.at_least(b), usize::from(b > a));
             let (right, j) = (c.at_least(d), 2 + usize::from(d > c));
             let (most, k) = (left.at_least(right), if right > left { j } else { i });
@@ -82,7 +106,7 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
             }
         }
         for p in rest {
-            best = better(best, (product(u, p), p));
+            best = better(best, (height(p), p));
         }
         best.1
     }
@@ -98,7 +122,13 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
         self.extent
     }
     fn error(&self) -> T {
-        T::count(2 * N + 2) * T::ROUNDOFF * self.extent
+        match self.spread {
+            Some(spread) => T::count(2 * N + 4) * T::ROUNDOFF * spread,
+            None => T::count(2 * N + 2) * T::ROUNDOFF * self.extent,
+        }
+    }
+    fn center(&self) -> Option<(Vector<T, N>, T)> {
+        self.spread.map(|spread| (Vector::from(*self.first), spread))
     }
 }
 
@@ -132,7 +162,7 @@ impl<'a, T: Real> Hull<'a, T> {
         let mut best = best;
         for &vertex in list {
             if let Some(p) = self.all.points.get(usize::from(vertex)) {
-                let value = product(u, p);
+                let value = self.all.height(u, p);
                 if best.is_none_or(|(most, _)| value > most) {
                     best = Some((value, vertex));
                 }
@@ -182,6 +212,9 @@ impl<T: Real> Support<T, 3> for Hull<'_, T> {
     }
     fn error(&self) -> T {
         self.all.error()
+    }
+    fn center(&self) -> Option<(Vector<T, 3>, T)> {
+        self.all.center()
     }
 }
 

@@ -78,6 +78,13 @@ pub trait Support<T: Real, const N: usize> {
         T::zero()
     }
 
+    /// For a set far from the origin of its frame (a mesh in world coordinates): a point near it, and an upper bound of
+    /// the core's distance from that point. Whoever places the set can then measure from there, and rounding
+    /// scales with the set's size instead of its position. `None`: nothing to gain.
+    fn center(&self) -> Option<(Vector<T, N>, T)> {
+        None
+    }
+
     /// The rounding error e of the promise above, as a length. The default, `16 N u extent`, covers a
     /// support mapping that does a few operations on coordinates of size `extent` (u: unit roundoff).
     fn error(&self) -> T {

@@ -1,0 +1,22 @@
+//! The C ABI: `include/qdist.h`, generated from this module by `make header`.
+//!
+//! * [`status`], [`version`]: codes and their names.
+//! * [`handle`]: a solver in the caller's memory.
+//! * [`generic`]: what the entry points of both scalars share. Checked pointers, callbacks as a
+//!   [`Support`](crate::support::Support) and a [`Gauge`](crate::qset::Gauge), and loops over run-time dimensions.
+//! * [`f64`](mod@f64): the structs and functions with suffix `_f64`, written by hand, since the header generator does not
+//!   expand macros. [`f32`](mod@f32): the same with `_f32`, generated from it.
+//!
+//! Nothing here switches between dimensions, shapes or scalars at run time where that would link code which a program does
+//! not use: each entry point names all three.
+//!
+//! The functions are `unsafe` to call from Rust; the header states what C callers promise, once for all of them.
+#![allow(non_camel_case_types, clippy::missing_safety_doc)]
+
+pub mod f64;
+#[allow(missing_docs)]
+pub mod f32;
+mod generic;
+pub mod handle;
+pub mod status;
+pub mod version;

@@ -1,0 +1,159 @@
+//! STATUS AND OUTCOME
+//!
+//! Two questions, two types. A status says whether the call worked. An outcome says what the run concluded, and whatever
+//! it concluded, the bracket holds.
+
+use crate::Outcome;
+use crate::depth::BodyError;
+use crate::support::ShapeError;
+use crate::workspace::WorkspaceError;
+use core::ffi::c_char;
+
+/// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
+/// with QDIST_ERROR_CALLBACK.
+pub type qdist_status = i32;
+
+/// The call worked.
+pub const QDIST_OK: qdist_status = 0;
+/// A pointer that must not be NULL is NULL.
+pub const QDIST_ERROR_NULL: qdist_status = 1;
+/// A number is out of range: a negative size, an empty list, a flag that is neither 0 nor 1.
+pub const QDIST_ERROR_ARGUMENT: qdist_status = 2;
+/// An argument is NaN or infinite, or a length is above 2e292 (float: 2e31), so that sums could overflow.
+pub const QDIST_ERROR_NONFINITE: qdist_status = 3;
+/// struct_size is not the size of a struct that this library knows.
+pub const QDIST_ERROR_STRUCT_SIZE: qdist_status = 4;
+/// The memory is shorter than QDIST_WORKSPACE_BYTES or QDIST_HULL_GRAPH_LEN says.
+pub const QDIST_ERROR_WORKSPACE_SIZE: qdist_status = 5;
+/// Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
+pub const QDIST_ERROR_ALIGNMENT: qdist_status = 6;
+/// The dimension is not one of 2 to 6, or solver, set, gauge and function are not of the same dimension.
+pub const QDIST_ERROR_DIMENSION: qdist_status = 7;
+/// The solver was made for the other scalar type.
+pub const QDIST_ERROR_SCALAR: qdist_status = 8;
+/// max_vertices < dimension + 1, max_facets < 2 * dimension, or one of them above 65535; or a solver that is too small for
+/// what it is to do.
+pub const QDIST_ERROR_CAPACITY: qdist_status = 9;
+/// The memory does not hold a solver.
+pub const QDIST_ERROR_SOLVER: qdist_status = 10;
+/// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0.
+pub const QDIST_ERROR_ROTATION: qdist_status = 11;
+/// A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
+pub const QDIST_ERROR_CALLBACK: qdist_status = 12;
+
+/// What did the run conclude?
+pub type qdist_outcome = i32;
+
+/// The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
+pub const QDIST_CONVERGED: qdist_outcome = 0;
+/// Stopped early: lower >= threshold.
+pub const QDIST_ABOVE: qdist_outcome = 1;
+/// Stopped early: upper < threshold.
+pub const QDIST_BELOW: qdist_outcome = 2;
+/// The origin is outside: upper < 0, and the bracket is that of minus the Euclidean distance.
+pub const QDIST_SEPARATED: qdist_outcome = 3;
+/// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
+pub const QDIST_TOUCHING: qdist_outcome = 4;
+/// The bracket cannot be narrowed in this scalar type; the tolerance asked for more.
+pub const QDIST_PRECISION: qdist_outcome = 5;
+/// The solver's memory is full.
+pub const QDIST_CAPACITY: qdist_outcome = 6;
+/// The iteration limit is reached.
+pub const QDIST_ITERATIONS: qdist_outcome = 7;
+/// The set is flat and the origin lies in it; `dimension` of the result says how flat.
+pub const QDIST_DEGENERATE: qdist_outcome = 8;
+/// A callback failed; the status is QDIST_ERROR_CALLBACK.
+pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
+
+/// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
+/// number. Callbacks must not return it, nor INT32_MIN + 1.
+pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483648;
+
+const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
+
+/// The name of a status, e.g. "null pointer". A static string, never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
+    match status {
+        QDIST_OK => c"ok",
+        QDIST_ERROR_NULL => c"null pointer",
+        QDIST_ERROR_ARGUMENT => c"argument out of range",
+        QDIST_ERROR_NONFINITE => c"argument not finite or too large",
+        QDIST_ERROR_STRUCT_SIZE => c"unknown struct size",
+        QDIST_ERROR_WORKSPACE_SIZE => c"memory too short",
+        QDIST_ERROR_ALIGNMENT => c"memory misaligned",
+        QDIST_ERROR_DIMENSION => c"wrong dimension",
+        QDIST_ERROR_SCALAR => c"solver of the other scalar type",
+        QDIST_ERROR_CAPACITY => c"capacity out of range",
+        QDIST_ERROR_SOLVER => c"not a solver",
+        QDIST_ERROR_ROTATION => c"not a rotation",
+        QDIST_ERROR_CALLBACK => c"callback failed",
+        _ => c"unknown status",
+    }
+    .as_ptr()
+}
+
+/// The name of an outcome, e.g. "converged". A static string, never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char {
+    match outcome {
+        QDIST_CONVERGED => c"converged",
+        QDIST_ABOVE => c"above",
+        QDIST_BELOW => c"below",
+        QDIST_SEPARATED => c"separated",
+        QDIST_TOUCHING => c"touching",
+        QDIST_PRECISION => c"precision",
+        QDIST_CAPACITY => c"capacity",
+        QDIST_ITERATIONS => c"iterations",
+        QDIST_DEGENERATE => c"degenerate",
+        QDIST_SUPPORT_FAILED => c"support failed",
+        _ => c"unknown outcome",
+    }
+    .as_ptr()
+}
+
+/// `Ok`, or the status that says what is wrong.
+pub(super) type Check<T = ()> = Result<T, qdist_status>;
+
+/// A check as the C caller sees it.
+pub(super) fn status(check: Check) -> qdist_status {
+    check.err().unwrap_or(QDIST_OK)
+}
+
+pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
+    match outcome {
+        Outcome::Converged => QDIST_CONVERGED,
+        Outcome::Above => QDIST_ABOVE,
+        Outcome::Below => QDIST_BELOW,
+        Outcome::Separated => QDIST_SEPARATED,
+        Outcome::Touching => QDIST_TOUCHING,
+        Outcome::Precision => QDIST_PRECISION,
+        Outcome::Capacity => QDIST_CAPACITY,
+        Outcome::Iterations => QDIST_ITERATIONS,
+        Outcome::Degenerate => QDIST_DEGENERATE,
+        Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
+    }
+}
+
+pub(super) fn from_shape(error: ShapeError) -> qdist_status {
+    match error {
+        ShapeError::Negative | ShapeError::Empty => QDIST_ERROR_ARGUMENT,
+        ShapeError::NonFinite => QDIST_ERROR_NONFINITE,
+        ShapeError::NotOrthonormal => QDIST_ERROR_ROTATION,
+    }
+}
+
+pub(super) fn from_body(error: BodyError) -> qdist_status {
+    match error {
+        BodyError::NonFinite => QDIST_ERROR_NONFINITE,
+        BodyError::Rotation => QDIST_ERROR_ROTATION,
+    }
+}
+
+pub(super) fn from_workspace(error: WorkspaceError) -> qdist_status {
+    match error {
+        WorkspaceError::Capacity => QDIST_ERROR_CAPACITY,
+        WorkspaceError::Size => QDIST_ERROR_WORKSPACE_SIZE,
+        WorkspaceError::Alignment => QDIST_ERROR_ALIGNMENT,
+    }
+}
