@@ -12,10 +12,10 @@
 
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
-use crate::query::Options;
+use crate::query::{Options, Query};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
-use crate::support::{Failure, Support};
+use crate::support::{Failure, Support, Symmetry};
 use nalgebra::SMatrix;
 
 /// A 3 x 3 matrix.
@@ -161,6 +161,37 @@ fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on
     offset
 }
 
+/// Lengths that the common axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
+const AXIS_ROUNDOFFS: usize = 64;
+
+impl<T: Real> Pair<'_, '_, T> {
+    /// The axis that both bodies turn about, if there is one up to rounding; the deviation goes into `error`.
+    fn common_axis(&mut self) -> Option<Vector<T, 3>> {
+        let axis = |body: &Body<'_, T>| Vector::<T, 3>::from(body.rotation.column(2));
+        let (first, second) = match (self.a.shape.symmetry(), self.b.shape.symmetry()) {
+            (Symmetry::Axis, Symmetry::Axis) => (axis(self.a), axis(self.b)),
+            (Symmetry::Axis, Symmetry::Full) => (axis(self.a), axis(self.a)),
+            (Symmetry::Full, Symmetry::Axis) => (axis(self.b), axis(self.b)),
+            _ => return None,
+        };
+        let allowed = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
+        let largest = |v: Vector<T, 3>| v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+        let aside = largest(first.cross(&second)).at_least(largest(first.cross(&self.offset)) / self.extent);
+        if !(aside <= allowed) || self.on_a.center.is_some() || self.on_b.center.is_some() {
+            return None;
+        }
+        let stretch = |body: &Body<'_, T>| {
+            let off = body.rotation.transpose() * body.rotation - Matrix3::identity();
+            off.iter().fold(T::zero(), |m, x| m.at_least(x.abs()))
+        };
+        if !(stretch(self.a).at_least(stretch(self.b)) <= allowed) {
+            return None;
+        }
+        self.error += allowed * T::count(4) * self.extent;
+        Some(first * (T::one() / norm(&first)))
+    }
+}
+
 impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
         Ok(self.sample(u, false)?.0)
@@ -221,15 +252,22 @@ impl<T: Real> Solver<'_, T, 3> {
     /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact.
     /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
     pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
-        let pair = match Pair::new(a, b) {
+        let mut pair = match Pair::new(a, b) {
             Ok(pair) => pair,
             Err(failure) => return Depth::failed(failure),
         };
+        let ball = Ball::unit();
+        if let Some(axis) = pair.common_axis() {
+            let mut query = Query::new(&pair, &ball, pair.radius(), *options);
+            if let Some(answer) = self.solve_meridian(&mut query, &axis) {
+                return Depth::new(&answer, &pair);
+            }
+        }
         let mut options = *options;
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let answer = self.solve(&pair, &Ball::unit(), &options);
+        let answer = self.solve(&pair, &ball, &options);
         Depth::new(&answer, &pair)
     }
 }

@@ -7,6 +7,7 @@ pub mod answer;
 pub mod bounds;
 pub mod depth;
 mod distance;
+mod meridian;
 mod polytope;
 pub mod qset;
 mod query;

@@ -120,7 +120,7 @@ pub fn largest<T: Real>(list: &[T]) -> T {
 pub fn reach<T: Real>(points: &[T], dimension: usize) -> T {
     let size = largest(points);
     if !(size > T::zero()) {
-        return T::TINY;
+        return tiny();
     }
     // Scaled, so that no square overflows.
     let mut most = T::zero();
@@ -130,9 +130,179 @@ pub fn reach<T: Real>(points: &[T], dimension: usize) -> T {
     size * most.root() * (T::one() + T::count(32) * T::ROUNDOFF)
 }
 
-/// Lengths that stand for "zero, and known".
-pub trait Tiny: Real {
-    /// A length that does not matter next to any other, and whose products with roundoff are normal numbers: exact
-    /// zero would say "unknown", and subnormal numbers are slow.
-    const TINY: Self;
+/// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow.
+#[inline(always)]
+pub fn tiny<T: Real>() -> T {
+    let squared = T::ROUNDOFF * T::ROUNDOFF;
+    squared * squared
+}
+
+/// The direction, scaled if its products could leave the range of the format. `store` keeps the scaled one.
+#[inline(always)]
+pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
+    let size = largest(u);
+    let limit = T::count(1 << 16);
+    if size < limit && size * limit > T::one() {
+        return u;
+    }
+    for (to, &from) in store.iter_mut().zip(u) {
+        *to = from / size;
+    }
+    store.get(..u.len()).unwrap_or(u)
+}
+
+// ------------------------------------------------------------------------------------------------- lists of points
+
+/// A point and its product with the direction.
+type Candidate<'a, T> = (T, &'a [T]);
+
+/// The point of a list of `dimension` coordinates each that is farthest along `u`, the first one of equals, and its product
+/// with `u`.
+pub fn farthest<'a, T: Real>(points: &'a [T], dimension: usize, u: &[T]) -> Option<Candidate<'a, T>> {
+    let mut best: Option<Candidate<'a, T>> = None;
+    for point in points.chunks_exact(dimension.max(1)) {
+        let height = dot(point, u);
+        if best.is_none_or(|(most, _)| height > most) {
+            best = Some((height, point));
+        }
+    }
+    best
+}
+
+/// [`farthest`] in three dimensions. Four points at a time, as a tournament: a running maximum makes every point wait for
+/// the one before it.
+#[inline(always)]
+pub fn farthest3<'a, T: Real>(points: &'a [T], u: &[T; 3]) -> Option<&'a [T; 3]> {
+    let candidate = |p: &'a [T; 3]| (p[0] * u[0] + p[1] * u[1] + p[2] * u[2], p);
+    let better = |a: (T, &'a [T; 3]), b: (T, &'a [T; 3])| if b.0 > a.0 { b } else { a };
+    let (points, _) = points.as_chunks::<3>();
+    let mut best = candidate(points.first()?);
+    let (fours, rest) = points.as_chunks::<4>();
+    for [a, b, c, d] in fours {
+        best = better(best, better(better(candidate(a), candidate(b)), better(candidate(c), candidate(d))));
+    }
+    for p in rest {
+        best = better(best, candidate(p));
+    }
+    Some(best.1)
+}
+
+// ---------------------------------------------------------------------------------------------------------- callbacks
+
+pub type SupportFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T, point: *mut T) -> i32;
+pub type ValueFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T) -> T;
+
+/// A set of the caller, as a [`Support`].
+pub struct CallbackSet<T> {
+    support: SupportFn<T>,
+    exhaustive: Option<SupportFn<T>>,
+    user: *mut c_void,
+    radius: T,
+    extent: T,
+    error: T,
+}
+
+impl<T: Real> CallbackSet<T> {
+    /// Checks the numbers: `lengths` are radius, extent and error; `n` is the dimension that the set says, 0 for any.
+    ///
+    /// # Safety
+    /// For the life of the value, the functions may be called with `user`, a direction and room for a point of dimension
+    /// `N`.
+    #[inline(always)]
+    pub unsafe fn new<const N: usize>(
+        support: Option<SupportFn<T>>,
+        exhaustive: Option<SupportFn<T>>,
+        user: *mut c_void,
+        lengths: [T; 3],
+        n: u32,
+    ) -> Check<Self> {
+        let support = support.ok_or(QDIST_ERROR_NULL)?;
+        let [radius, extent, error] = lengths;
+        let (radius, extent, error) = (length(radius)?, length(extent)?, length(error)?);
+        if n != 0 && n as usize != N {
+            return Err(QDIST_ERROR_DIMENSION);
+        }
+        Ok(Self { support, exhaustive, user, radius, extent, error })
+    }
+
+    #[inline(always)]
+    fn ask<const N: usize>(&self, function: SupportFn<T>, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        // A coordinate that the callback does not write stays NaN, and the query ends with that.
+        let mut point = Vector::<T, N>::from_element(T::of(f64::NAN));
+        // SAFETY: the promise of `new`; both vectors are N numbers in a row.
+        let code = unsafe { function(self.user, u.as_ptr(), point.as_mut_ptr()) };
+        if code == 0 { Ok(point) } else { Err(Failure(code)) }
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for CallbackSet<T> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.ask(self.support, u)
+    }
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.ask(self.exhaustive.unwrap_or(self.support), u)
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.exhaustive.is_some()
+    }
+    fn radius(&self) -> T {
+        self.radius
+    }
+    fn extent(&self) -> T {
+        self.extent
+    }
+    fn error(&self) -> T {
+        if self.error > T::zero() { self.error } else { T::count(16 * N) * T::ROUNDOFF * self.extent }
+    }
+}
+
+/// A gauge of the caller, as a [`Gauge`].
+pub struct CallbackGauge<T> {
+    function: ValueFn<T>,
+    user: *mut c_void,
+    error: T,
+}
+
+impl<T: Real> CallbackGauge<T> {
+    /// Checks the numbers. Where the extent is not known, the values along the axes bound it.
+    ///
+    /// # Safety
+    /// For the life of the value, the function may be called with `user` and a direction of dimension `N`.
+    pub unsafe fn new<const N: usize>(function: Option<ValueFn<T>>, user: *mut c_void, extent: T) -> Check<Self> {
+        let function = function.ok_or(QDIST_ERROR_NULL)?;
+        let mut gauge = Self { function, user, error: T::zero() };
+        let mut extent = length(extent)?;
+        if !(extent > T::zero()) {
+            let mut corner = Vector::<T, N>::zeros();
+            let mut axis = Vector::<T, N>::zeros();
+            for i in 0..N {
+                for sign in [T::one(), -T::one()] {
+                    axis[i] = sign;
+                    // A value that is not finite ends the query when the solver meets one.
+                    corner[i] = corner[i].at_least(gauge.ask(&axis));
+                }
+                axis[i] = T::zero();
+            }
+            extent = norm(&corner);
+        }
+        gauge.error = T::count(16 * N) * T::ROUNDOFF * extent;
+        Ok(gauge)
+    }
+
+    #[inline(always)]
+    fn ask<const N: usize>(&self, u: &Vector<T, N>) -> T {
+        // SAFETY: the promise of `new`; the vector is N numbers in a row.
+        unsafe { (self.function)(self.user, u.as_ptr()) }
+    }
+}
+
+impl<T: Real, const N: usize> Gauge<T, N> for CallbackGauge<T> {
+    #[inline]
+    fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
+        Ok(self.ask(u))
+    }
+    fn error(&self) -> T {
+        self.error
+    }
 }

@@ -184,6 +184,15 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         Some(index)
     }
 
+    /// Stores a vertex at a position of an ordered chain of vertices.
+    pub fn insert_in_chain(&mut self, position: usize, vertex: Vertex<T, N>) -> Option<()> {
+        let mut carried = self.add_vertex(vertex).map(|_| vertex)?;
+        for slot in self.vertices.iter_mut().take(self.vertex_count).skip(position) {
+            core::mem::swap(slot, &mut carried);
+        }
+        Some(())
+    }
+
     fn take_slot(&mut self) -> Option<Index> {
         let slot = if self.free != NONE {
             let slot = self.free;

@@ -12,7 +12,7 @@
 use nalgebra::SMatrix;
 
 use super::shapes::{ShapeError, above, check_numbers, check_sizes, in_range, length, rescaled, unit};
-use super::{Failure, Support};
+use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
 
 /// M^T u.
@@ -70,6 +70,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         (**self).center()
+    }
+    fn symmetry(&self) -> Symmetry {
+        (**self).symmetry()
     }
     fn error(&self) -> T {
         (**self).error()
@@ -469,6 +472,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     }
     fn extent(&self) -> T {
         self.shape.extent()
+    }
+    fn symmetry(&self) -> Symmetry {
+        self.shape.symmetry()
     }
     fn error(&self) -> T {
         self.shape.error()

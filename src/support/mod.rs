@@ -38,6 +38,17 @@ pub use solids::{Capsule, Cone, Cylinder};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failure(pub i32);
 
+/// Rotations that leave a set in R^3 unchanged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// None that is known.
+    None,
+    /// All rotations about the z axis of the set's frame.
+    Axis,
+    /// All rotations about the origin of the set's frame.
+    Full,
+}
+
 /// A compact convex set `core + radius * ball` in R^N, given by its support mapping.
 ///
 /// Implement it for your own shapes: only [`support`](Support::support) is required. All lengths are in
@@ -83,6 +94,11 @@ pub trait Support<T: Real, const N: usize> {
     /// scales with the set's size instead of its position. `None`: nothing to gain.
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         None
+    }
+
+    /// For a set in R^3: exact rotational symmetry. Two bodies that turn about a common axis are measured in a plane.
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::None
     }
 
     /// The rounding error e of the promise above, as a length. The default, `16 N u extent`, covers a

@@ -11,7 +11,7 @@
 //! tests one sum that it has at hand, and takes a rescaled direction in a cold path when it is out of range. That
 //! branch is always predicted; scaling every direction would cost a division.
 
-use super::{Failure, Support};
+use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
 
 /// Why a shape cannot be built.
@@ -205,6 +205,9 @@ impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
     fn radius(&self) -> T {
         self.radius
     }
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Full
+    }
     fn error(&self) -> T {
         T::zero()
     }
@@ -302,6 +305,12 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
     }
     fn extent(&self) -> T {
         largest(&self.semi)
+    }
+    fn symmetry(&self) -> Symmetry {
+        match self.semi.as_slice() {
+            [x, y, _] if x == y => Symmetry::Axis,
+            _ => Symmetry::None,
+        }
     }
     fn error(&self) -> T {
         T::count(N + 8) * T::ROUNDOFF * largest(&self.semi)

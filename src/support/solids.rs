@@ -1,7 +1,7 @@
 //! Solids of revolution in three dimensions. The axis is z, the centre of the height is the origin.
 
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
-use super::{Failure, Support};
+use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
 
 /// A cylinder: `x^2 + y^2 <= radius^2`, `|z| <= half_height`. One square root and one division.
@@ -39,6 +39,9 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     }
     fn extent(&self) -> T {
         length(&Vector::<T, 2>::new(self.radius, self.half_height))
+    }
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Axis
     }
     fn error(&self) -> T {
         T::count(8) * T::ROUNDOFF * self.radius
@@ -82,6 +85,9 @@ impl<T: Real> Support<T, 3> for Capsule<T> {
     }
     fn extent(&self) -> T {
         self.half_height
+    }
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Axis
     }
     fn error(&self) -> T {
         T::zero()
@@ -139,6 +145,9 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     }
     fn extent(&self) -> T {
         length(&Vector::<T, 2>::new(self.radius, self.half_height))
+    }
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Axis
     }
     fn error(&self) -> T {
         T::count(16) * T::ROUNDOFF * (self.radius + self.half_height)
