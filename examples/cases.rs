@@ -1,10 +1,23 @@
 //! Runs case files: brackets against references, iterations and time.
+use qdist::support::{Hull, Support, graph_len};
 use qdist::{Options, Outcome, Real, Workspace};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
+
+/// Large hulls with their graph, other shapes as they are.
+fn prepared<'a, T: Real>(text: &common::ShapeText, points: &'a [[T; 3]], words: &'a mut [u16]) -> Box<dyn Support<T, 3> + 'a> {
+    if points.len() <= 32 || text.kind != "hull" {
+        return common::shape(text, points);
+    }
+    let mut memory = Box::new(Workspace::<T, 3, 6000, 12100>::new());
+    match memory.solver().prepare_hull(points, words) {
+        Ok(graph) => Box::new(Hull::new(points, graph).unwrap()),
+        Err(e) => { println!("{e:?}"); common::shape(text, points) }
+    }
+}
 
 fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
     let cases = common::parse(&std::fs::read_to_string(file).unwrap());
@@ -14,8 +27,10 @@ fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
     let (mut bad, mut converged, mut normals, mut n) = (0, 0, 0, 0);
     for case in &cases {
         let points: Vec<_> = case.bodies.iter().map(|b| common::points::<T>(&b.shape)).collect();
-        let a = common::shape(&case.bodies[0].shape, &points[0]);
-        let b = common::shape(&case.bodies[1].shape, &points[1]);
+        let mut words: Vec<Vec<u16>> = points.iter().map(|p| vec![0; graph_len(p.len())]).collect();
+        let (left, right) = words.split_at_mut(1);
+        let a = prepared(&case.bodies[0].shape, &points[0], &mut left[0]);
+        let b = prepared(&case.bodies[1].shape, &points[1], &mut right[0]);
         let (a, b) = (common::body(&case.bodies[0], &*a), common::body(&case.bodies[1], &*b));
         let options = Options { relative: T::of(rel), absolute: T::of(abs * case.size), ..Options::default() };
         let r = solver.depth(&a, &b, &options);

@@ -9,6 +9,7 @@ pub mod depth;
 mod distance;
 mod meridian;
 mod polytope;
+pub mod prepare;
 pub mod qset;
 mod query;
 pub mod scalar;

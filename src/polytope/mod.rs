@@ -162,6 +162,29 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.iter().take(self.facet_top).filter(|f| f.is_live())
     }
 
+    /// From facet to better neighbour, to the one farthest beneath the point in units of its distance from the centre:
+    /// if that one does not see the point, none does.
+    pub fn climb(&self, from: Index, point: &Vector<T, N>) -> Option<Index> {
+        let height = |facet: &Facet<T, N>| {
+            let dual = facet.normal.dot(&(point - self.center));
+            dual / (facet.offset - facet.normal.dot(&self.center))
+        };
+        let (mut at, mut best) = (from, height(self.facet(from)?));
+        for _ in 0..self.live {
+            let here = at;
+            for &next in &self.facet(here)?.neighbors {
+                let value = height(self.facet(next)?);
+                if value > best {
+                    (at, best) = (next, value);
+                }
+            }
+            if at == here {
+                break;
+            }
+        }
+        Some(at)
+    }
+
     /// The vertices of a facet.
     pub fn corners(&self, facet: &Facet<T, N>) -> Option<[Vertex<T, N>; N]> {
         let mut corners = [Vertex { point: Vector::zeros(), witness: Vector::zeros() }; N];
@@ -261,6 +284,22 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             };
         }
         Some(())
+    }
+}
+
+impl<T: Real> Polytope<'_, T, 3> {
+    /// The edges, each once. (A ridge in space is an edge.)
+    pub fn edges(&self) -> impl Iterator<Item = (Vertex<T, 3>, Vertex<T, 3>)> {
+        let numbered = self.facets.iter().take(self.facet_top).enumerate().filter(|(_, f)| f.is_live());
+        numbered.flat_map(move |(number, f)| {
+            let [a, b, c] = f.vertices;
+            let ridges = [(0, b, c), (1, c, a), (2, a, b)];
+            ridges.into_iter().filter_map(move |(slot, v, w)| {
+                let first = usize::from(*f.neighbors.get(slot)?) > number;
+                let vertex = |i: Index| self.vertices.get(usize::from(i)).copied();
+                if first { Some((vertex(v)?, vertex(w)?)) } else { None }
+            })
+        })
     }
 }
 

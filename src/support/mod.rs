@@ -29,6 +29,7 @@ mod shapes;
 mod solids;
 
 pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
+pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
 pub use hull::{Hull, Points};
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
