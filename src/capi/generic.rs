@@ -7,11 +7,13 @@ use super::status::{
 };
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
-use crate::support::{BoxShape, Failure, Point, Support};
+use crate::support::{BoxShape, Failure, HullGraph, Point, Support, Symmetry};
 use core::ffi::c_void;
 
 /// The largest dimension.
 pub const MAX_DIMENSION: usize = 6;
+/// The most points of a simplex.
+pub const MAX_POINTS: usize = MAX_DIMENSION + 1;
 
 // ---------------------------------------------------------------------------------------------------------- pointers
 
@@ -142,7 +144,7 @@ pub fn tiny<T: Real>() -> T {
 pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
     let size = largest(u);
     let limit = T::count(1 << 16);
-    if size < limit && size * limit > T::one() {
+    if (size < limit && size * limit > T::one()) || !(size > T::zero()) {
         return u;
     }
     for (to, &from) in store.iter_mut().zip(u) {
@@ -169,22 +171,91 @@ pub fn farthest<'a, T: Real>(points: &'a [T], dimension: usize, u: &[T]) -> Opti
     best
 }
 
-/// [`farthest`] in three dimensions. Four points at a time, as a tournament: a running maximum makes every point wait for
-/// the one before it.
+/// Coordinates as points in space.
 #[inline(always)]
-pub fn farthest3<'a, T: Real>(points: &'a [T], u: &[T; 3]) -> Option<&'a [T; 3]> {
-    let candidate = |p: &'a [T; 3]| (p[0] * u[0] + p[1] * u[1] + p[2] * u[2], p);
-    let better = |a: (T, &'a [T; 3]), b: (T, &'a [T; 3])| if b.0 > a.0 { b } else { a };
-    let (points, _) = points.as_chunks::<3>();
-    let mut best = candidate(points.first()?);
+pub fn in_space<T>(list: &[T]) -> &[[T; 3]] {
+    list.as_chunks::<3>().0
+}
+
+/// Products of points with a direction; with `FAR`, of points relative to the first, which is more accurate where all are far
+/// from the origin.
+struct Heights<'a, T, const FAR: bool> {
+    u: &'a [T; 3],
+    first: &'a [T; 3],
+}
+
+impl<T: Real, const FAR: bool> Heights<'_, T, FAR> {
+    #[inline(always)]
+    fn of(&self, p: &[T; 3]) -> T {
+        let (u, c) = (self.u, self.first);
+        if FAR {
+            (p[0] - c[0]) * u[0] + (p[1] - c[1]) * u[1] + (p[2] - c[2]) * u[2]
+        } else {
+            p[0] * u[0] + p[1] * u[1] + p[2] * u[2]
+        }
+    }
+}
+
+/// [`farthest`] in space. Four at a time, as a tournament of values and small indices: a running maximum would make every
+/// point wait for the one before it.
+#[inline(always)]
+pub fn farthest3<'a, T: Real, const FAR: bool>(points: &'a [[T; 3]], u: &[T; 3]) -> Option<&'a [T; 3]> {
+    let first = points.first()?;
+    let heights = Heights::<T, FAR> { u, first };
+    let mut best = (heights.of(first), first);
     let (fours, rest) = points.as_chunks::<4>();
-    for [a, b, c, d] in fours {
-        best = better(best, better(better(candidate(a), candidate(b)), better(candidate(c), candidate(d))));
+    for four in fours {
+        let [a, b, c, d] = four.each_ref().map(|p| heights.of(p));
+        let (left, i) = if b > a { (b, 1) } else { (a, 0) };
+        let (right, j) = if d > c { (d, 3) } else { (c, 2) };
+        let (most, k) = if right > left { (right, j) } else { (left, i) };
+        if let Some(p) = four.get(k)
+            && most > best.0
+        {
+            best = (most, p);
+        }
     }
     for p in rest {
-        best = better(best, candidate(p));
+        let height = heights.of(p);
+        if height > best.0 {
+            best = (height, p);
+        }
     }
     Some(best.1)
+}
+
+/// The vertex that climbing a hull's graph ends at, see [`Hull`](crate::support::Hull).
+#[inline(always)]
+pub fn climb<'a, T: Real, const FAR: bool>(
+    points: &'a [[T; 3]],
+    graph: &HullGraph<'_>,
+    u: &[T; 3],
+) -> Option<&'a [T; 3]> {
+    let heights = Heights::<T, FAR> { u, first: points.first()? };
+    let best_of = |list: &[u16], mut best: Option<(T, u16)>| {
+        for &vertex in list {
+            if let Some(p) = points.get(usize::from(vertex)) {
+                let height = heights.of(p);
+                if best.is_none_or(|(most, _)| height > most) {
+                    best = Some((height, vertex));
+                }
+            }
+        }
+        best
+    };
+    let mut best = best_of(graph.seeds(), None);
+    for _ in 0..points.len() {
+        let Some((height, vertex)) = best else { break };
+        let next = best_of(graph.neighbors(vertex), best);
+        if next.is_none_or(|(most, _)| most <= height) {
+            break;
+        }
+        best = next;
+    }
+    match best.and_then(|(_, vertex)| points.get(usize::from(vertex))) {
+        Some(p) => Some(p),
+        None => farthest3::<T, FAR>(points, u),
+    }
 }
 
 // ---------------------------------------------------------------------------------------------------------- callbacks
@@ -254,6 +325,41 @@ impl<T: Real, const N: usize> Support<T, N> for CallbackSet<T> {
     }
     fn error(&self) -> T {
         if self.error > T::zero() { self.error } else { T::count(16 * N) * T::ROUNDOFF * self.extent }
+    }
+}
+
+/// A set of the caller in space, with what helps to place it.
+pub struct CallbackShape<T: Real> {
+    pub set: CallbackSet<T>,
+    pub center: Option<(Vector<T, 3>, T)>,
+    pub symmetry: Symmetry,
+}
+
+impl<T: Real> Support<T, 3> for CallbackShape<T> {
+    #[inline]
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        self.set.support(u)
+    }
+    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        self.set.exhaustive(u)
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.set.exhaustive.is_some()
+    }
+    fn radius(&self) -> T {
+        self.set.radius
+    }
+    fn extent(&self) -> T {
+        self.set.extent
+    }
+    fn center(&self) -> Option<(Vector<T, 3>, T)> {
+        self.center
+    }
+    fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+    fn error(&self) -> T {
+        Support::<T, 3>::error(&self.set)
     }
 }
 

@@ -19,4 +19,5 @@ pub mod f32;
 mod generic;
 pub mod handle;
 pub mod status;
+pub mod symmetry;
 pub mod version;

@@ -5,6 +5,7 @@
 
 use crate::Outcome;
 use crate::depth::BodyError;
+use crate::prepare::GraphError;
 use crate::support::ShapeError;
 use crate::workspace::WorkspaceError;
 use core::ffi::c_char;
@@ -40,6 +41,8 @@ pub const QDIST_ERROR_SOLVER: qdist_status = 10;
 pub const QDIST_ERROR_ROTATION: qdist_status = 11;
 /// A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
 pub const QDIST_ERROR_CALLBACK: qdist_status = 12;
+/// All points of a hull lie in one plane: use qdist_points.
+pub const QDIST_ERROR_FLAT: qdist_status = 13;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -88,6 +91,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_SOLVER => c"not a solver",
         QDIST_ERROR_ROTATION => c"not a rotation",
         QDIST_ERROR_CALLBACK => c"callback failed",
+        QDIST_ERROR_FLAT => c"points lie in a plane",
         _ => c"unknown status",
     }
     .as_ptr()
@@ -140,6 +144,15 @@ pub(super) fn from_shape(error: ShapeError) -> qdist_status {
         ShapeError::Negative | ShapeError::Empty => QDIST_ERROR_ARGUMENT,
         ShapeError::NonFinite => QDIST_ERROR_NONFINITE,
         ShapeError::NotOrthonormal => QDIST_ERROR_ROTATION,
+    }
+}
+
+pub(super) fn from_graph(error: GraphError) -> qdist_status {
+    match error {
+        GraphError::Shape(error) => from_shape(error),
+        GraphError::Flat => QDIST_ERROR_FLAT,
+        GraphError::Capacity => QDIST_ERROR_CAPACITY,
+        GraphError::Words => QDIST_ERROR_WORKSPACE_SIZE,
     }
 }
 

@@ -1,6 +1,12 @@
-//! Reads the convex case files: the format is that of `tests/data/README.md`.
+//! Reads the convex case files: the format is that of `tests/data/README.md`. The oracles are in the modules.
 
 #![allow(dead_code)]
+
+pub mod dd;
+pub mod dice;
+pub mod exact;
+pub mod hull;
+pub mod memory;
 
 use nalgebra::{Matrix3, Vector3};
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};

@@ -4,7 +4,7 @@
 //! set that is made of them.
 
 use super::super::generic::{
-    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, length, shared, tiny,
+    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, length, shared, tiny,
 };
 use super::super::status::{Check, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status};
 use super::sets::{qdist_set_f64, room};
@@ -251,7 +251,8 @@ unsafe fn ask_linear(user: *mut c_void, direction: *const f64, point: *mut f64, 
                 *w += m * x;
             }
         }
-        let w = first(&w, columns)?;
+        let mut store = [0.0; _];
+        let w = in_range(first(&w, columns)?, &mut store);
         let squared = dot(w, w);
         // A direction that the map loses: every point of the set is as far as any other.
         let axis = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];

@@ -5,11 +5,13 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{CallbackSet, shared};
-use super::super::status::{Check, from_body};
+use super::super::generic::{CallbackSet, CallbackShape, aligned, coordinates, length, shared};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, from_body, qdist_status, status};
 use crate::Body;
 use crate::depth::Matrix3;
 use crate::scalar::Vector;
+use crate::support::Symmetry;
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use core::ffi::c_void;
 
 /// Writes a point of the core that is farthest along `direction` to `point`.
@@ -56,6 +58,14 @@ pub struct qdist_body_f64 {
     pub rotation: [f64; 9],
     /// Position of the body's frame in the world.
     pub translation: [f64; 3],
+    /// For a set far from the origin of its frame: a point near it. Used when `spread` is above 0.
+    pub center: [f64; 3],
+    /// An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
+    /// to `center`. 0: measured from the origin.
+    pub spread: f64,
+    /// Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
+    /// about one axis a plane problem.
+    pub symmetry: u32,
 }
 
 impl qdist_set_f64 {
@@ -72,15 +82,55 @@ impl qdist_set_f64 {
 impl qdist_body_f64 {
     /// The identity pose.
     pub(super) fn at_origin(set: qdist_set_f64) -> Self {
-        Self { set, rotation: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
+        let rotation = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        Self { set, rotation, translation: [0.0; 3], center: [0.0; 3], spread: 0.0, symmetry: QDIST_SYMMETRY_NONE }
+    }
+
+    /// # Safety
+    /// As for [`qdist_set_f64::adapt`], in dimension 3.
+    #[inline(always)]
+    pub(super) unsafe fn adapt(&self) -> Check<CallbackShape<f64>> {
+        // SAFETY: the caller's promise.
+        let set = unsafe { self.set.adapt::<3>() }?;
+        let spread = length(self.spread)?;
+        let center = if spread > 0.0 {
+            coordinates(&self.center)?;
+            Some((Vector::from(self.center), spread))
+        } else {
+            None
+        };
+        let symmetry = match self.symmetry {
+            QDIST_SYMMETRY_NONE => Symmetry::None,
+            QDIST_SYMMETRY_AXIS => Symmetry::Axis,
+            QDIST_SYMMETRY_FULL => Symmetry::Full,
+            _ => return Err(QDIST_ERROR_ARGUMENT),
+        };
+        Ok(CallbackShape { set, center, symmetry })
     }
 
     #[inline(always)]
-    pub(super) fn place<'a>(&self, set: &'a CallbackSet<f64>) -> Check<Body<'a, f64>> {
+    pub(super) fn place<'a>(&self, shape: &'a CallbackShape<f64>) -> Check<Body<'a, f64>> {
         let [a, b, c, d, e, f, g, h, i] = self.rotation;
         let rotation = Matrix3::new(a, b, c, d, e, f, g, h, i);
-        Body::new(set, rotation, Vector::from(self.translation)).map_err(from_body)
+        Body::new(shape, rotation, Vector::from(self.translation)).map_err(from_body)
     }
+}
+
+/// Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
+/// body.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *const qdist_set_f64) -> qdist_status {
+    let fill = || {
+        aligned(body)?;
+        // SAFETY: what the header asks of the caller.
+        let set = unsafe { shared(set) }?;
+        // SAFETY: what the header asks of the caller; the functions are not called here.
+        unsafe { set.adapt::<3>() }?;
+        // SAFETY: checked.
+        unsafe { body.write(qdist_body_f64::at_origin(*set)) };
+        Ok(())
+    };
+    status(fill())
 }
 
 /// The parts of a support function's arguments, checked: the struct behind `user`, the direction, and room for the
@@ -106,6 +156,6 @@ pub(super) unsafe fn arguments<'a, S, const N: usize>(
 /// Room for a point; the pointer is checked, the memory not yet written.
 #[inline(always)]
 pub(super) fn room<const N: usize>(point: *mut f64) -> Check<*mut [f64; N]> {
-    super::super::generic::aligned(point)?;
+    aligned(point)?;
     Ok(point.cast())
 }

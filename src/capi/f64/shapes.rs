@@ -10,8 +10,9 @@
 use super::super::generic::{aligned, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
-use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support};
-use crate::scalar::Vector;
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use crate::scalar::{Real, Vector};
+use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
 use core::ffi::c_void;
 
 /// All points within `radius` of the origin.
@@ -121,17 +122,22 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
     aligned(body)?;
     // SAFETY: the caller's promise.
     let set = unsafe { shared(shape) }?.set().map_err(from_shape)?;
+    let symmetry = match set.symmetry() {
+        Symmetry::None => QDIST_SYMMETRY_NONE,
+        Symmetry::Axis => QDIST_SYMMETRY_AXIS,
+        Symmetry::Full => QDIST_SYMMETRY_FULL,
+    };
     let set = qdist_set_f64 {
         support,
         exhaustive: None,
         user: shape.cast_mut().cast(),
         radius: set.radius(),
-        extent: set.extent().max(tiny()),
-        error: set.error().max(tiny()),
+        extent: set.extent().at_least(tiny()),
+        error: set.error().at_least(tiny()),
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f64::at_origin(set)) };
+    unsafe { body.write(qdist_body_f64 { symmetry, ..qdist_body_f64::at_origin(set) }) };
     Ok(())
 }
 

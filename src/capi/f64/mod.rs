@@ -1,0 +1,9 @@
+//! The C ABI for `f64`.
+
+pub mod combine;
+pub mod gauges;
+pub mod points;
+pub mod query;
+pub mod sets;
+pub mod shapes;
+pub mod solver;
