@@ -8,14 +8,21 @@ use std::time::Instant;
 mod common;
 
 /// Large hulls with their graph, other shapes as they are.
-fn prepared<'a, T: Real>(text: &common::ShapeText, points: &'a [[T; 3]], words: &'a mut [u16]) -> Box<dyn Support<T, 3> + 'a> {
+fn prepared<'a, T: Real>(
+    text: &common::ShapeText,
+    points: &'a [[T; 3]],
+    words: &'a mut [u16],
+) -> Box<dyn Support<T, 3> + 'a> {
     if points.len() <= 32 || text.kind != "hull" {
         return common::shape(text, points);
     }
     let mut memory = Box::new(Workspace::<T, 3, 6000, 12100>::new());
     match memory.solver().prepare_hull(points, words) {
         Ok(graph) => Box::new(Hull::new(points, graph).unwrap()),
-        Err(e) => { println!("{e:?}"); common::shape(text, points) }
+        Err(e) => {
+            println!("{e:?}");
+            common::shape(text, points)
+        }
     }
 }
 
@@ -50,7 +57,9 @@ fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
             let t: f64 = case.bodies.iter().map(|b| b.translation.iter().map(|x| x.abs()).sum::<f64>()).sum();
             let s: f64 = case.bodies.iter().map(|b| b.shape.numbers.iter().fold(0.0f64, |m, x| m.max(x.abs()))).sum();
             8.0 * T::ROUNDOFF.to_f64() * (t + 3.0 * s)
-        } else { 0.0 };
+        } else {
+            0.0
+        };
         let ok = lo - input <= case.upper && case.lower <= up + input;
         let width = up - lo;
         let conv = width <= (1e-6 * case.depth.abs()).max(1e-12 * case.size);
@@ -63,7 +72,22 @@ fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
         converged += conv as usize;
         normals += normal_ok as usize;
         if verbose && (!ok || !conv || !normal_ok) || r.outcome == Outcome::Precision && verbose {
-            println!("  {} {:?} ref {:e} lo-ref {:e} up-ref {:e} size {:.3e} it {} v {} f {} ok {} conv {} normal {} us {:.2}", case.id, r.outcome, case.depth, lo - case.depth, up - case.depth, case.size, r.iterations, r.vertices, r.facets, ok, conv, normal_ok, times[2]);
+            println!(
+                "  {} {:?} ref {:e} lo-ref {:e} up-ref {:e} size {:.3e} it {} v {} f {} ok {} conv {} normal {} us {:.2}",
+                case.id,
+                r.outcome,
+                case.depth,
+                lo - case.depth,
+                up - case.depth,
+                case.size,
+                r.iterations,
+                r.vertices,
+                r.facets,
+                ok,
+                conv,
+                normal_ok,
+                times[2]
+            );
         }
         stats.entry(case.family()).or_default().push((times[2], width / case.size, r.iterations, r.facets));
     }
@@ -71,7 +95,15 @@ fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
     for (family, mut v) in stats {
         v.sort_by(|a, b| a.0.total_cmp(&b.0));
         let m = v[v.len() / 2];
-        println!("   {family:22} n {:3} us {:.2} [{:.2} {:.2}] it {} facets {}", v.len(), m.0, v[0].0, v[v.len() - 1].0, m.2, m.3);
+        println!(
+            "   {family:22} n {:3} us {:.2} [{:.2} {:.2}] it {} facets {}",
+            v.len(),
+            m.0,
+            v[0].0,
+            v[v.len() - 1].0,
+            m.2,
+            m.3
+        );
     }
 }
 

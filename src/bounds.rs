@@ -90,26 +90,24 @@ impl<T: Real> Bounds<T> {
         if up { value + slack } else { value - slack }
     }
 
-    /// Upper bound from a support value of the core along a unit normal where Q has value `gauge` >= 0, itself off by at
-    /// most `gauge_error`.
+    /// Upper bound from a support value of the core along a unit normal, for a ball of radius 1 / `per_ball`.
+    #[inline]
+    pub fn upper_ball(&self, height: T, margin: T, per_ball: T) -> T {
+        Self::outward((height + margin + self.radius) * per_ball, true)
+    }
+
+    /// Lower bound from the offset of a plane that bounds everything on its far side, for a ball of radius 1 / `per_ball`.
+    #[inline]
+    pub fn lower_ball(&self, offset: T, margin: T, per_ball: T) -> T {
+        Self::outward((offset - margin + self.radius) * per_ball, false)
+    }
+
+    /// Upper bound from a support value along a unit normal where a general Q has value `gauge` >= 0, itself off by
+    /// at most `gauge_error`.
     #[inline]
     pub fn upper(&self, height: T, margin: T, gauge: T, gauge_error: T) -> T {
         let top = height + margin + self.radius;
         let bottom = if top > T::zero() { gauge - gauge_error } else { gauge + gauge_error };
         if bottom > T::zero() { Self::outward(top / bottom, true) } else { T::HUGE }
-    }
-
-    /// Lower bound from the offset of a plane that bounds everything on its far side.
-    #[inline]
-    pub fn lower(&self, offset: T, margin: T, gauge: T, gauge_error: T) -> T {
-        let top = offset - margin + self.radius;
-        let bottom = if top > T::zero() { gauge + gauge_error } else { gauge - gauge_error };
-        if bottom > T::zero() {
-            Self::outward(top / bottom, false)
-        } else if top > T::zero() {
-            T::HUGE
-        } else {
-            -T::HUGE
-        }
     }
 }

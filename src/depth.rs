@@ -10,6 +10,7 @@
 //! which is d_Q(M) for the unit ball Q; where the bodies are apart, the same minimum is minus their distance.
 //! The minimiser u points from A to B.
 
+use crate::NOT_FINITE;
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
 use crate::query::{Options, Query};
@@ -79,11 +80,13 @@ impl<'a, T: Real> Body<'a, T> {
             for sign in [T::one(), -T::one()] {
                 let mut axis = Vector::<T, 3>::zeros();
                 axis[i] = sign;
+                // Written so that NaN is kept.
                 let reach = self.shape.support(&axis)?[i].abs();
-                corner[i] = corner[i].at_least(reach);
+                corner[i] = if reach < corner[i] { corner[i] } else { reach };
             }
         }
-        Ok(Anchor { center: None, extent: norm(&corner) })
+        let extent = norm(&corner);
+        if extent.finite() { Ok(Anchor { center: None, extent }) } else { Err(Failure(NOT_FINITE)) }
     }
 
     /// The support point relative to the placed anchor.

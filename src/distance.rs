@@ -4,9 +4,8 @@
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
 
-use crate::polytope::Vertex;
 use crate::scalar::{Real, Vector, norm};
-use crate::simplex::Simplex;
+use crate::simplex::{Simplex, Vertex};
 use crate::support::{Failure, Support};
 
 /// Where the iteration ended.
@@ -19,26 +18,16 @@ pub struct Nearest<T, const N: usize> {
     pub inside: bool,
 }
 
-/// What one step of the iteration found.
-pub struct Step<T, const N: usize> {
-    /// Unit direction from the current point towards the origin.
-    pub direction: Vector<T, N>,
-    /// Support value along it: every point x of the set has direction.x <= height, so the distance is >= -height.
-    pub height: T,
-    /// Norm of the current point: the distance is <= this.
-    pub distance: T,
-}
-
-/// A step that reduces the distance by less than this factor of the resolution ends the iteration.
+/// More steps than any convergent walk takes: rounding ends them earlier.
 const STEPS: usize = 128;
 
-/// Walks to the point nearest to the origin, starting with the support point along `first`. `resolution(reach)` is the
-/// length that cannot be told from zero when the points have norm up to `reach`. `watch` sees every step and ends the
-/// walk by returning `true`.
+/// Walks to the point nearest to the origin, starting with the support point along `first`. The distance is at most the norm
+/// of the current point, and at least minus any support value along a unit direction, which `support` gets to
+/// see. `watch` is told the norm after every support call and ends the walk by returning `true`.
 pub fn nearest<T: Real, const N: usize>(
     first: &Vector<T, N>,
     mut support: impl FnMut(&Vector<T, N>) -> Result<Vertex<T, N>, Failure>,
-    mut watch: impl FnMut(&Step<T, N>) -> bool,
+    mut watch: impl FnMut(T) -> bool,
 ) -> Result<Nearest<T, N>, Failure> {
     let vertex = support(first)?;
     let mut reach = norm(&vertex.point);
@@ -55,7 +44,7 @@ pub fn nearest<T: Real, const N: usize>(
         let vertex = support(&direction)?;
         let height = direction.dot(&vertex.point);
         reach = reach.at_least(norm(&vertex.point));
-        if watch(&Step { direction, height, distance }) || height + distance <= resolution {
+        if watch(distance) || height + distance <= resolution {
             break;
         }
         let before = simplex.clone();

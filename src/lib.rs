@@ -1,13 +1,104 @@
-//! qdist (essay to come)
+//! *How deep is this point, body or grasp inside that set, and how sure are we?*
+//!
+//! qdist computes the generalized penetration distance of Zheng & Yamane,
+//!
+//! ```text
+//! d_Q(A) = max { λ : λQ ⊂ A } = min over u of h_A(u) / h_Q(u)         (eq. 16, Proposition 1)
+//! ```
+//!
+//! of the origin in a compact convex set A, measured by a convex set Q, for controllers that have no heap and no
+//! time. Every answer is a **bracket** `lower <= d <= upper`, true in floating point, with the direction that proves `upper` and
+//! the points of A that prove `lower`, whatever stopped the run. Depth of two bodies in space is the special case A = difference of the bodies,
+//! Q = unit ball:
+//!
+//! ```
+//! use qdist::{Body, Options, Vector, Workspace, support::{BoxShape, Cylinder}};
+//!
+//! let crate_ = BoxShape::new(Vector::from([0.5, 0.5, 0.5]))?;
+//! let post = Cylinder::new(0.1, 1.0)?;
+//! let mut memory = Workspace::<f64, 3, 64, 128>::new(); // 64 vertices, 128 facets: 12 KB, no heap
+//!
+//! let a = Body::at(&crate_, Vector::zeros());
+//! let b = Body::at(&post, Vector::from([0.55, 0.0, 0.0]));
+//! let depth = memory.solver().depth(&a, &b, &Options::default());
+//!
+//! assert!(depth.lower <= 0.05 && 0.05 <= depth.upper); // the post is 5 cm inside the crate
+//! assert!((depth.normal - Vector::from([1.0, 0.0, 0.0])).amax() < 1e-6); // and leaves along x
+//! # Ok::<(), qdist::support::ShapeError>(())
+//! ```
+//!
+//! # How it works
+//!
+//! Both sets are known by their support functions only ([`support`], [`qset`]). The solver grows a polytope inside A ([`solver`],
+//! Algorithm 1 of the paper). The facet that is lowest with respect to Q bounds d from below; the support value along that facet's normal
+//! bounds d from above, since *any* direction does; and the support point, put into the polytope, raises the facet.
+//! It ends when both bounds agree to the tolerance, when a threshold is decided, when arithmetic has nothing left to
+//! say, or when the memory is full; the bracket is true at every moment, so any end is a good end.
+//!
+//! Three things keep it exact and fast:
+//!
+//! * The **bookkeeping** (`polytope`) is adjacency: what a new point eliminates is found by walking, the new facets'
+//!   neighbours by turning through the eliminated patch, their normals as combinations of two old ones. Rounding can
+//!   make the surface loose, not inconsistent.
+//! * The **bounds** ([`bounds`]) use of that surface only that it is closed and where its vertices lie. The rounding
+//!   margins are derived there.
+//! * **What a query does not need is not done.** Balls swept over a set (spheres, capsules, margins, and the ball that
+//!   rolls inside an ellipsoid) are added at the end, exactly, and where that leaves the cores apart their distance
+//!   (`distance`, GJK) is the whole answer. Bodies that turn about one axis are solved in a plane (`meridian`). Facets
+//!   above the best upper bound are never queued.
+//!
+//! # The house
+//!
+//! Arrows point down; nobody knows who is above.
+//!
+//! ```text
+//! capi                          C ABI: include/qdist.h
+//!  depth   prepare              two bodies in space; vertex graphs of large hulls
+//!   meridian                    two bodies on one axis
+//!    solver                     Algorithm 1
+//!     query                     one query's state: best upper bound, bracket, answer
+//!      polytope  distance       facets, adjacency, queue; nearest point
+//!       simplex  bounds  answer   small simplices; what certifies the bracket; outcomes
+//!        support  qset          the sets A and Q
+//!         workspace  scalar     memory; f32 and f64
+//! ```
+//!
+//! # Memory, threads, failure
+//!
+//! All memory is the caller's: a [`Workspace`] in a static or on the stack, or any aligned bytes ([`workspace::place`]). Capacities are run-time numbers,
+//! so there is one compiled solver per dimension (2 to 6) and scalar. There are no globals; a [`Solver`] is used by
+//! one thread at a time. A support function may fail; a query never does: it returns an [`Outcome`] and a bracket.
+//! A bound that is not known at all is plus or minus the scalar's largest finite number.
+//!
+//! # Features
+//!
+//! * `std`: square roots from the standard library. Nothing else changes.
+//! * `capi`: the C functions. `panic-handler`: for the freestanding C library.
+//!
+//! # Sources
+//!
+//! * Y. Zheng and K. Yamane, *Evaluation of grasp force efficiency considering hand configuration and using novel
+//!   generalized penetration distance algorithm*, ICRA 2013: "the paper" throughout.
+//! * E. G. Gilbert, D. W. Johnson, S. S. Keerthi, *A fast procedure for computing the distance between complex objects
+//!   in three-dimensional space*, 1988. P. Wolfe, *Finding the nearest point in a polytope*, 1976.
+//! * W. Blaschke, *Kreis und Kugel*, 1916 (balls that roll inside convex bodies).
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![warn(missing_docs)]
+// Loops over constant ranges index arrays of the same constant length: no bound is checked, and none can fail.
 #![allow(clippy::needless_range_loop)]
+// `!(x > 0)` is written where it must hold for NaN.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 pub mod answer;
 pub mod bounds;
+#[cfg(feature = "capi")]
+pub mod capi;
 pub mod depth;
 mod distance;
 mod meridian;
+#[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
+#[path = "capi/panic.rs"]
+mod panic;
 mod polytope;
 pub mod prepare;
 pub mod qset;
@@ -20,9 +111,9 @@ pub mod workspace;
 
 pub use answer::{Answer, Outcome};
 pub use depth::{Body, BodyError, Depth};
-pub use polytope::Vertex;
 pub use query::Options;
 pub use scalar::{Real, Vector};
+pub use simplex::Vertex;
 pub use solver::Solver;
 pub use workspace::Workspace;
 

@@ -114,7 +114,13 @@ impl<T: Real> Solver<'_, T, 3> {
 fn across<T: Real>(axis: &Vector<T, 3>) -> Vector<T, 3> {
     let mut seed = Vector::<T, 3>::zeros();
     let [x, y, z] = [axis[0].abs(), axis[1].abs(), axis[2].abs()];
-    let smallest = if x <= y && x <= z { 0 } else if y <= z { 1 } else { 2 };
+    let smallest = if x <= y && x <= z {
+        0
+    } else if y <= z {
+        1
+    } else {
+        2
+    };
     for i in 0..3 {
         if i == smallest {
             seed[i] = T::one();

@@ -4,9 +4,9 @@
 //! inside, facet F is the dual point y_F = n_F / (n_F.(v - c)), and p lies outside exactly when the largest y_F.(p - c)
 //! is above 1. A linear function on the (dual) polytope has no local maxima, so walking to better neighbours finds it.
 
-use crate::polytope::{Index, Insertion, Polytope, Vertex};
+use crate::polytope::{Index, Insertion, Polytope};
 use crate::scalar::{Real, Vector};
-use crate::simplex::Start;
+use crate::simplex::{Start, Vertex};
 use crate::solver::Solver;
 use crate::support::{BLOCK, EMPTY, GraphWriter, HullGraph, Points, SEEDS, ShapeError, Support};
 
@@ -120,7 +120,8 @@ fn relative<T: Real>(points: &[[T; 3]], p: &[T; 3]) -> Vector<T, 3> {
 /// The axes and the diagonals of a cube, both ways.
 fn seed_directions<T: Real>() -> impl Iterator<Item = Vector<T, 3>> {
     let one = [-1.0, 0.0, 1.0];
-    let all = one.into_iter().flat_map(move |x| one.into_iter().flat_map(move |y| one.into_iter().map(move |z| [x, y, z])));
+    let all =
+        one.into_iter().flat_map(move |x| one.into_iter().flat_map(move |y| one.into_iter().map(move |z| [x, y, z])));
     all.filter(|d| matches!(d.iter().filter(|&&x| x == 0.0).count(), 0 | 2)).map(|d| Vector::from(d.map(T::of)))
 }
 

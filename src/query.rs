@@ -3,10 +3,10 @@
 
 use crate::answer::{Answer, Stop};
 use crate::bounds::{Bounds, Bracket, Tolerance};
-use crate::polytope::{Polytope, Vertex};
+use crate::polytope::Polytope;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, finite};
-use crate::simplex::Simplex;
+use crate::simplex::{Simplex, Vertex};
 use crate::support::{Failure, Support};
 
 /// How a query ends, and where it looks first.
@@ -41,6 +41,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     q: &'q dyn Gauge<T, N>,
     /// Radius of Q where it is a ball.
     pub ball: Option<T>,
+    /// Its inverse, or 1.
+    per_ball: T,
     gauge_error: T,
     pub bounds: Bounds<T>,
     pub options: Options<T, N>,
@@ -51,6 +53,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     height: T,
     gauge: T,
     ratio: T,
+    /// The lowest key of a facet that was not queued because it was above `ratio` then.
+    skipped: T,
     /// Ask the support function without its shortcuts.
     exhaustive: bool,
     pub iterations: u32,
@@ -67,6 +71,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             a,
             q,
             ball: q.ball_radius(),
+            per_ball: T::one() / q.ball_radius().unwrap_or(T::one()),
             gauge_error: q.error(),
             bounds: Bounds { support_error: a.error(), radius, dimension: N, unknown_extent: !(extent > T::zero()) },
             options,
@@ -75,6 +80,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             height: T::HUGE,
             gauge: T::one(),
             ratio: T::HUGE,
+            skipped: T::HUGE,
             exhaustive: false,
             iterations: 0,
             support_calls: 0,
@@ -121,9 +127,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     }
 
     fn note(&mut self, direction: &Vector<T, N>, height: T) -> Result<(), Failure> {
-        let gauge = self.gauge(direction)?;
         let top = height + self.bounds.radius;
-        if gauge <= self.gauge_error && self.ball.is_none() {
+        if let Some(radius) = self.ball {
+            if height < self.height {
+                (self.direction, self.height, self.gauge, self.ratio) =
+                    (*direction, height, radius, top * self.per_ball);
+            }
+            return Ok(());
+        }
+        let gauge = self.gauge(direction)?;
+        if gauge <= self.gauge_error {
             // Q has no extent that way. It bounds nothing, but it may show that the origin is outside.
             if top < T::zero() && height < self.height {
                 (self.direction, self.height, self.gauge) = (*direction, height, gauge);
@@ -151,7 +164,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     pub fn key(&self, normal: &Vector<T, N>, offset: T) -> Result<T, Failure> {
         let top = offset + self.bounds.radius;
         let bottom = match self.ball {
-            Some(radius) => return Ok(top / radius),
+            Some(_) => return Ok(top * self.per_ball),
             None => self.gauge(normal)? + self.gauge_error,
         };
         Ok(if bottom > T::zero() { top / bottom } else { T::HUGE })
@@ -160,6 +173,21 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// The best quotient h_A/h_Q so far, without margins.
     pub fn ratio(&self) -> T {
         self.ratio
+    }
+
+    /// The lowest key of a facet that will not come back from the queue.
+    pub fn skipped(&self) -> T {
+        self.skipped
+    }
+
+    /// A facet with this key is not queued.
+    pub fn skip(&mut self, key: T) {
+        self.skipped = self.skipped.at_most(key);
+    }
+
+    /// Largest norm of a point of the core seen so far.
+    pub fn reach(&self) -> T {
+        self.reach
     }
 
     pub fn margin(&self) -> T {
@@ -173,9 +201,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// The upper bound: proved by `direction`.
     pub fn upper(&self) -> T {
+        if self.height >= T::HUGE {
+            return T::HUGE; // nothing has been asked yet
+        }
         let margin = self.margin();
         match self.ball {
-            Some(radius) => self.bounds.upper(self.height, margin, radius, T::zero()),
+            Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
             None if self.is_outside(self.height) => self.bounds.upper(self.height, margin, T::one(), T::zero()),
             None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
         }
@@ -183,8 +214,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Lower bound from a point of A at this distance: d >= -distance, whether or not the origin is inside.
     pub fn lower_from_distance(&self, distance: T) -> T {
-        let gauge = self.ball.unwrap_or(T::one());
-        self.bounds.lower(-distance, self.margin(), gauge, T::zero())
+        self.bounds.lower_ball(-distance, self.margin(), self.per_ball)
     }
 
     /// Lower bound from the lowest key of a closed surface around the origin whose facets have offsets of at least
@@ -195,7 +225,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             return None;
         }
         Some(match self.ball {
-            Some(radius) => self.bounds.lower(key * radius - self.bounds.radius, margin, radius, T::zero()),
+            Some(radius) => self.bounds.lower_ball(key * radius - self.bounds.radius, margin, self.per_ball),
             None => key * (T::one() - margin / inradius) * (T::one() - T::count(8) * T::ROUNDOFF),
         })
     }

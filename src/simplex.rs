@@ -3,16 +3,32 @@
 //! Both rest on Gram-Schmidt over at most N edges, with no matrix to invert and nothing to pivot on that could vanish
 //! unnoticed.
 
-use crate::polytope::Vertex;
 use crate::scalar::{Real, Vector, norm};
 use heapless::Vec;
 
 /// The most vertices that a simplex in R^N can have here, N + 1 <= 7.
 pub const MAX_CORNERS: usize = 7;
 
+/// A support point: a point of A, and the witness that came with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex<T, const N: usize> {
+    /// A point of A.
+    pub point: Vector<T, N>,
+    /// For a difference of two bodies, the point of the first one; elsewhere `point` itself.
+    pub witness: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Vertex<T, N> {
+    /// Fills untouched memory.
+    pub fn empty() -> Self {
+        Vertex { point: Vector::zeros(), witness: Vector::zeros() }
+    }
+}
+
 /// A simplex with the barycentric weights of its point nearest to the origin.
 #[derive(Clone)]
 pub struct Simplex<T, const N: usize> {
+    /// 1 to N + 1 vertices with their weights.
     pub corners: Vec<Corner<T, N>, MAX_CORNERS>,
 }
 
@@ -96,6 +112,7 @@ impl<T: Real, const N: usize> Edges<T, N> {
 }
 
 impl<T: Real, const N: usize> Simplex<T, N> {
+    /// One point, with weight 1.
     pub fn new(vertex: Vertex<T, N>) -> Self {
         let mut corners = Vec::new();
         let _ = corners.push(Corner { vertex, weight: T::one() });
@@ -252,21 +269,22 @@ impl<T: Real, const N: usize> Start<T, N> {
     /// grows around it; where the hull contains the origin, the coordinate axis that sticks out most.
     pub fn direction(&self) -> Vector<T, N> {
         let Some(base) = self.base else { return self.first };
-        let outside = |v: &Vector<T, N>| {
-            let once = self.flat.complement(&self.edges.complement(v));
-            self.flat.complement(&self.edges.complement(&once))
-        };
-        let towards = outside(&-base);
-        let length = norm(&towards);
-        if length > T::of(1e-3) * norm(&base) && length > T::zero() {
-            return towards * (T::one() / length);
+        let outside = |v: &Vector<T, N>| self.flat.complement(&self.edges.complement(v));
+        let mut towards = outside(&-base);
+        let (squared, whole) = (towards.dot(&towards), base.dot(&base));
+        if squared > whole * T::of(1e-6) {
+            if squared < whole * T::of(0.01) {
+                // Much was cancelled: once more, for what rounding left.
+                towards = outside(&towards);
+            }
+            return towards * (T::one() / norm(&towards));
         }
         let mut best = Vector::zeros();
         let mut longest = T::zero();
         for i in 0..N {
             let mut axis = Vector::<T, N>::zeros();
             axis[i] = T::one();
-            let rest = outside(&axis);
+            let rest = outside(&outside(&axis));
             let length = norm(&rest);
             if length > longest {
                 longest = length;

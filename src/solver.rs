@@ -3,11 +3,11 @@
 use crate::answer::{Answer, Stop};
 use crate::bounds::Bracket;
 use crate::distance::{Cloud, Inflated, Nearest, nearest};
-use crate::polytope::{Facet, Index, Insertion, Polytope, Vertex};
+use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector};
-use crate::simplex::{Simplex, Start};
+use crate::simplex::{Simplex, Start, Vertex};
 use crate::support::{Failure, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or
@@ -18,10 +18,11 @@ pub struct Solver<'w, T, const N: usize> {
     pub(crate) polytope: Polytope<'w, T, N>,
 }
 
-/// What the expansion ended with: the lowest facet (if the polytope has any) and its key.
+/// What the expansion ended with: the lowest key, and its facet if it is known.
 struct Expanded<T> {
     stop: Stop,
-    lowest: Option<(T, Index)>,
+    key: T,
+    facet: Option<Index>,
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
@@ -61,7 +62,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         let expanded = match self.start(&mut query, &first) {
             Ok(None) => self.expand(&mut query),
-            Ok(Some(stop)) => Ok(Expanded { stop, lowest: None }),
+            Ok(Some(stop)) => Ok(Expanded { stop, key: -T::HUGE, facet: None }),
             Err(failure) => Err(failure),
         };
         match expanded {
@@ -73,13 +74,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// Lines 5 to 9 of Algorithm 1.
     fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
         loop {
-            let lowest = self.polytope.pop_lowest();
-            let Some((key, index)) = lowest else {
+            let Some((key, index)) = self.polytope.pop_lowest() else {
                 // No facet below the best upper bound is left.
-                let stop = if query.verify()? { Stop::Met } else { Stop::Rounding };
-                return Ok(Expanded { stop, lowest: None });
+                let key = query.skipped().at_most(query.ratio());
+                query.verify()?;
+                return Ok(Expanded { stop: Stop::Rounding, key, facet: None });
             };
-            let end = |stop| Ok(Expanded { stop, lowest });
+            let key = key.at_most(query.skipped());
+            let end = |stop| Ok(Expanded { stop, key, facet: Some(index) });
             let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { return end(Stop::Rounding) };
             if let Some(stop) = self.verdict(query, key)
                 && query.verify()?
@@ -133,11 +135,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     /// Line 7: keys of the new facets. One above the best upper bound will never be the lowest that matters.
-    fn rate_fresh(&mut self, query: &Query<'_, T, N>) -> Result<(), Failure> {
+    fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
         while let Some(index) = self.polytope.next_fresh() {
             let Some(facet) = self.polytope.facet(index) else { break };
             let key = query.key(&facet.normal, facet.offset)?;
-            self.polytope.set_key(index, key, key < query.ratio());
+            let matters = key < query.ratio();
+            self.polytope.set_key(index, key, matters);
+            if !matters {
+                query.skip(key);
+            }
         }
         Ok(())
     }
@@ -152,8 +158,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             if query.is_outside(height) && query.bounds.radius == T::zero() {
                 return Ok(Some(Stop::Met));
             }
-            let reach = vertex.point.dot(&vertex.point).root().at_least(self.polytope.reach());
-            if start.progress(&direction, &vertex.point) < reach * T::of(0.01) {
+            if start.progress(&direction, &vertex.point) < query.reach() * T::of(0.01) {
                 let (other, height) = query.support(&-direction)?;
                 if query.is_outside(height) && query.bounds.radius == T::zero() {
                     return Ok(Some(Stop::Met));
@@ -193,9 +198,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let near = nearest(
             first,
             |u| shared.try_borrow_mut().map_err(|_| Failure(crate::EMPTY))?.support(u).map(|(vertex, _)| vertex),
-            |step| {
+            |distance| {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
-                let bracket = Bracket { lower: query.lower_from_distance(step.distance), upper: query.upper() };
+                let bracket = Bracket { lower: query.lower_from_distance(distance), upper: query.upper() };
                 let verdict = query.verdict(&bracket);
                 let end = verdict.or_else(|| query.exhausted().then_some(Stop::Iterations));
                 stop = end.unwrap_or(stop);
@@ -207,15 +212,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// Turns the state of the polytope into an answer.
     fn conclude(&mut self, query: &mut Query<'_, T, N>, expanded: Expanded<T>) -> Answer<T, N> {
-        let Expanded { stop, lowest } = expanded;
+        let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
         let expandable = self.polytope.peak_facets() > 0;
-        let key = lowest.map_or(query.ratio(), |(key, _)| key);
         if !apart
             && expandable
             && let Some(lower) = query.lower_from_key(key, self.inradius(query, key))
         {
-            let witness = self.touching_simplex(query, lowest);
+            let witness = self.touching_simplex(query, facet);
             return query.answer(stop, lower, witness, &self.polytope);
         }
         // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end.
@@ -235,47 +239,33 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// The simplex of the surface that touches the largest d Q: for a ball, the one around the foot of the
     /// perpendicular on the lowest plane. That facet may be one of several in the plane.
-    fn touching_simplex(&self, query: &Query<'_, T, N>, lowest: Option<(T, Index)>) -> Simplex<T, N> {
-        let facet = lowest.and_then(|(_, index)| self.polytope.facet(index)).or_else(|| {
-            let mut best: Option<&Facet<T, N>> = None;
-            for facet in self.polytope.facets() {
-                if best.is_none_or(|b| facet.key < b.key) {
-                    best = Some(facet);
-                }
-            }
-            best
-        });
-        let Some(facet) = facet else { return Simplex::new(Vertex::empty()) };
-        let Some(corners) = self.polytope.corners(facet) else { return Simplex::new(Vertex::empty()) };
-        let Some((base, rest)) = corners.split_first() else { return Simplex::new(Vertex::empty()) };
-        let mut simplex = Simplex::new(*base);
-        for corner in rest {
-            simplex.push(*corner);
-        }
+    fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
+        let lowest = match facet {
+            Some(index) => self.polytope.facet(index),
+            None => self.polytope.lowest(),
+        };
+        let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
+        let mut simplex = self.polytope.corners(facet);
         if query.ball.is_none() {
             return simplex;
         }
         let resolution = self.polytope.resolution();
-        let whole = simplex.clone();
-        let solved = simplex.minimize(resolution);
+        simplex.minimize(resolution);
         let foot = facet.normal * facet.offset;
         let miss = simplex.point() - foot;
         let near = resolution * T::count(64) + query.options.relative * facet.offset.abs();
-        if solved && miss.dot(&miss) <= near * near {
-            return simplex;
-        }
-        let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
-        let first = self.polytope.facet(0).map_or(facet.normal, |_| facet.normal);
-        match cloud.nearest(&first) {
-            Some(mut found) if found.distance * found.distance < miss.dot(&miss) => {
+        if miss.dot(&miss) > near * near {
+            let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
+            if let Some(mut found) = cloud.nearest(&facet.normal)
+                && found.distance * found.distance < miss.dot(&miss)
+            {
                 for corner in &mut found.simplex.corners {
                     corner.vertex.point += foot;
                 }
-                found.simplex
+                return found.simplex;
             }
-            _ if solved => simplex,
-            _ => whole,
         }
+        simplex
     }
 
     /// An answer whose lower bound comes from the stored vertices alone, without asking A again.

@@ -1,7 +1,8 @@
 //! Memory: one layout, placed in the caller's memory or owned by a const-generic struct.
 
-use crate::polytope::{Entry, Facet, Polytope, Vertex};
+use crate::polytope::{Entry, Facet, Polytope};
 use crate::scalar::Real;
+use crate::simplex::Vertex;
 use crate::solver::Solver;
 use core::mem::{MaybeUninit, align_of, size_of};
 
@@ -121,9 +122,9 @@ pub(crate) unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &L
 /// A solver's memory as a value: `V` vertices and `F` facets, for a `static` or the stack.
 ///
 /// ```
-/// use qdist::{Workspace, support::BoxShape, qset::Ball, Options};
+/// use qdist::{Options, Vector, Workspace, qset::Ball, support::BoxShape};
 /// let mut memory = Workspace::<f64, 3, 64, 128>::new();
-/// let cuboid = BoxShape::new([1.0, 2.0, 3.0]).unwrap();
+/// let cuboid = BoxShape::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
 /// let answer = memory.solver().solve(&cuboid, &Ball::unit(), &Options::default());
 /// assert!(answer.lower <= 1.0 && 1.0 <= answer.upper);
 /// ```

@@ -57,7 +57,8 @@ fn run<T: Real>(case: &Case, options: &Options<T, 3>, memory: &mut Workspace<T, 
     // The files have the reference rounded to f64, and f32 sees other bodies than the file: each coordinate moves by up to
     // 2^-24 of its size. 8 times that, of the coordinates of both bodies, covers the depth.
     let single = T::ROUNDOFF.to_f64() > 1e-10;
-    let input = if single { 8.0 * T::ROUNDOFF.to_f64() * (reach(&case.bodies[0]) + reach(&case.bodies[1])) } else { 0.0 };
+    let input =
+        if single { 8.0 * T::ROUNDOFF.to_f64() * (reach(&case.bodies[0]) + reach(&case.bodies[1])) } else { 0.0 };
     let slack = input + f64::EPSILON * case.depth.abs();
     if !(seen.lower <= case.upper + slack && case.lower <= seen.upper + slack) {
         wrong.push(format!("bracket [{:e}, {:e}] misses the reference {:e}", seen.lower, seen.upper, case.depth));
@@ -150,7 +151,12 @@ impl Verdict {
         let have = 1.0 - wide.len() as f64 / reports.len() as f64;
         if have < share {
             let list: Vec<String> = wide.iter().map(|r| format!("{} ({:.1e})", r.id, r.relative_width)).collect();
-            self.0.push(format!("{what}: {:.2} % narrow, {:.2} % wanted; wide: {}", 100.0 * have, 100.0 * share, list.join(" ")));
+            self.0.push(format!(
+                "{what}: {:.2} % narrow, {:.2} % wanted; wide: {}",
+                100.0 * have,
+                100.0 * share,
+                list.join(" ")
+            ));
         }
     }
 

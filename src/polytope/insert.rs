@@ -1,7 +1,8 @@
 //! Propositions 3 and 4: which facets a new point eliminates, and which it makes.
 
-use super::{Facet, Index, NONE, Polytope, State, Vertex};
+use super::{Facet, Index, NONE, Polytope, State};
 use crate::scalar::{Real, Vector};
+use crate::simplex::Vertex;
 
 /// What became of an insertion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

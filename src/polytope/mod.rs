@@ -16,6 +16,7 @@
 //! the latter.
 
 use crate::scalar::{Real, Vector, norm};
+use crate::simplex::{Simplex, Vertex};
 
 mod heap;
 mod insert;
@@ -29,15 +30,6 @@ pub type Index = u16;
 
 /// No vertex, no facet.
 pub const NONE: Index = Index::MAX;
-
-/// A vertex of the polytope: a point of A, and the witness that came with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex<T, const N: usize> {
-    /// A point of A.
-    pub point: Vector<T, N>,
-    /// For a difference of two bodies, the point of the first one; elsewhere `point` itself.
-    pub witness: Vector<T, N>,
-}
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
@@ -138,11 +130,6 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.peak
     }
 
-    /// Largest norm of a vertex.
-    pub fn reach(&self) -> T {
-        self.reach
-    }
-
     /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
     /// unit n and |v| <= reach, with room for the error of n itself.
     pub fn resolution(&self) -> T {
@@ -185,13 +172,19 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         Some(at)
     }
 
+    /// The facet with the smallest key, queued or not.
+    pub fn lowest(&self) -> Option<&Facet<T, N>> {
+        self.facets().reduce(|best, f| if f.key < best.key { f } else { best })
+    }
+
     /// The vertices of a facet.
-    pub fn corners(&self, facet: &Facet<T, N>) -> Option<[Vertex<T, N>; N]> {
-        let mut corners = [Vertex { point: Vector::zeros(), witness: Vector::zeros() }; N];
-        for i in 0..N {
-            corners[i] = *self.vertices.get(usize::from(facet.vertices[i]))?;
+    pub fn corners(&self, facet: &Facet<T, N>) -> Simplex<T, N> {
+        let mut vertices = facet.vertices.iter().filter_map(|&v| self.vertices.get(usize::from(v)));
+        let mut simplex = Simplex::new(vertices.next().copied().unwrap_or(Vertex::empty()));
+        for vertex in vertices {
+            simplex.push(*vertex);
         }
-        Some(corners)
+        simplex
     }
 
     /// Stores a vertex, or nothing when the capacity is used up.
@@ -315,12 +308,5 @@ impl<T: Real, const N: usize> Facet<T, N> {
             link: NONE,
             state: State::Free,
         }
-    }
-}
-
-impl<T: Real, const N: usize> Vertex<T, N> {
-    /// Fills untouched memory.
-    pub fn empty() -> Self {
-        Vertex { point: Vector::zeros(), witness: Vector::zeros() }
     }
 }

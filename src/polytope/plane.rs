@@ -25,7 +25,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         let repaired = self.repair(vertices, &normal)?;
         let (low, high) = self.heights(vertices, &repaired)?;
         // Not a number compares false: the first normal is kept, unless it is none itself.
-        if high - low < highest - lowest || !(lowest <= highest) { Some((repaired, low)) } else { Some((normal, lowest)) }
+        if high - low < highest - lowest || !(lowest <= highest) {
+            Some((repaired, low))
+        } else {
+            Some((normal, lowest))
+        }
     }
 
     /// min and max of n.v over the vertices.
@@ -56,9 +60,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             axes[i][i] = T::one();
         }
         for _ in 1..N {
-            let Some(longest) = edges.iter().copied().max_by(|a, b| {
-                a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal)
-            }) else {
+            let Some(longest) = edges
+                .iter()
+                .copied()
+                .max_by(|a, b| a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal))
+            else {
                 break;
             };
             let length = norm(&longest);
@@ -78,9 +84,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         let normal = if hint.dot(&hint) > small * small {
             hint
         } else {
-            let axis = axes.iter().copied().max_by(|a, b| {
-                a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal)
-            })?;
+            let axis = axes
+                .iter()
+                .copied()
+                .max_by(|a, b| a.dot(a).partial_cmp(&b.dot(b)).unwrap_or(core::cmp::Ordering::Equal))?;
             if axis.dot(&(self.center - base)) > T::zero() { -axis } else { axis }
         };
         let length = norm(&normal);

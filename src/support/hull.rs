@@ -84,11 +84,7 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
     #[inline(always)]
     fn scan(&self, u: &Vector<T, N>) -> &'a [T; N] {
         // Two copies of the loop, each with one way to measure.
-        if self.spread.is_none() {
-            self.scan_by(|p| product(u, p))
-        } else {
-            self.scan_by(|p| self.height(u, p))
-        }
+        if self.spread.is_none() { self.scan_by(|p| product(u, p)) } else { self.scan_by(|p| self.height(u, p)) }
     }
 
     #[inline(always)]

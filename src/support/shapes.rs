@@ -285,7 +285,11 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
     pub fn new(semi: Vector<T, N>) -> Result<Self, ShapeError> {
         check_sizes(semi.iter())?;
         let (most, least) = (largest(&semi), semi.iter().fold(T::HUGE, |m, &x| m.at_most(x)));
-        let ball = if least > most * T::of(0.25) { least / most * least * (T::one() - T::count(8) * T::ROUNDOFF) } else { T::zero() };
+        let ball = if least > most * T::of(0.25) {
+            least / most * least * (T::one() - T::count(8) * T::ROUNDOFF)
+        } else {
+            T::zero()
+        };
         Ok(Self { semi, ball })
     }
 
@@ -388,8 +392,7 @@ mod tests {
                     let bound = f64::from(e.error());
                     assert!(up >= ellipsoid_value(&d, &u) - bound * n, "{d:?} {u:?} {p:?}");
                     // In the set, up to the error: the nearest point on the ray to p is in it.
-                    let g =
-                        (0..3).filter(|&i| d[i] > 0.0).map(|i| (p[i] / d[i]).powi(2)).sum::<f64>().sqrt();
+                    let g = (0..3).filter(|&i| d[i] > 0.0).map(|i| (p[i] / d[i]).powi(2)).sum::<f64>().sqrt();
                     let length = p.iter().map(|&x| x.powi(2)).sum::<f64>().sqrt();
                     assert!((g - 1.0).max(0.0) * length <= bound + 1e-40);
                 }

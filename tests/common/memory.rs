@@ -89,16 +89,24 @@ pub fn broken_promise<T: Real, const N: usize>(
         .or_else(|| claim(s.lower <= s.upper, "lower > upper"))
         .or_else(|| claim(s.vertices <= vertices && s.facets <= facets, "more memory used than there is"))
         .or_else(|| claim(limit == 0 || s.iterations <= limit, "more iterations than allowed"))
-        .or_else(|| claim((s.failure != 0) == (s.outcome == Outcome::SupportFailed), "failure code and outcome disagree"))
+        .or_else(|| {
+            claim((s.failure != 0) == (s.outcome == Outcome::SupportFailed), "failure code and outcome disagree")
+        })
         .or_else(|| {
             let unbounded = s.upper >= T::HUGE.to_f64() || s.outcome == Outcome::SupportFailed;
             claim(unbounded || (s.direction_length - 1.0).abs() <= 32.0 * u * N as f64, "direction is no unit vector")
         })
         .or_else(|| match s.outcome {
-            Outcome::Converged => claim(width <= allowed && s.lower > 0.0, "Converged, but the bracket is wide or not above 0"),
+            Outcome::Converged => {
+                claim(width <= allowed && s.lower > 0.0, "Converged, but the bracket is wide or not above 0")
+            }
             Outcome::Separated => claim(s.upper < 0.0, "Separated, but upper >= 0"),
-            Outcome::Above => claim(options.threshold.is_some_and(|t| s.lower >= t.to_f64()), "Above, but lower < threshold"),
-            Outcome::Below => claim(options.threshold.is_some_and(|t| s.upper < t.to_f64()), "Below, but upper >= threshold"),
+            Outcome::Above => {
+                claim(options.threshold.is_some_and(|t| s.lower >= t.to_f64()), "Above, but lower < threshold")
+            }
+            Outcome::Below => {
+                claim(options.threshold.is_some_and(|t| s.upper < t.to_f64()), "Below, but upper >= threshold")
+            }
             Outcome::Iterations => claim(limit != 0, "Iterations without a limit"),
             Outcome::Touching => claim(s.lower <= 0.0 && s.upper >= 0.0, "Touching, but the bracket misses 0"),
             Outcome::Precision | Outcome::Capacity => claim(s.upper >= 0.0, "apart, but not Separated"),
