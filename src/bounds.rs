@@ -25,8 +25,8 @@
 //!
 //! and neither the accuracy of n_F nor the convexity of the surface is used: a bad normal or a wrong visibility decision makes
 //! the bound loose, not false. (Equality holds when n_F is exact, eq. 23.) The computed e_F is off by at most
-//! (2N + 4) u R, and the vertices are off A by at most e, which costs e for a ball and, for
-//! another Q, the factor (1 - m / ρ) with ρ the inradius min e_F of the surface: h_A(u) >= h_V(u) - m |u|
+//! (2N + 4) u R, which is taken off each of them. The vertices are off A by at most e, which costs e for a ball and, for
+//! another Q, the factor (1 - e / ρ) with ρ the inradius min e_F of the surface: h_A(u) >= h_V(u) - e |u|
 //! and |u| <= h_V(u) / ρ.
 //!
 //! When the origin is not certainly inside, the bound is minus the norm of the point of conv V nearest to it.

@@ -64,7 +64,7 @@ impl<T: Real> Solver<'_, T, 3> {
         loop {
             let Some(edge) = self.lowest_edge(axis, outward) else { return Ok(None) };
             let inradius = edge.offset.at_most(ends);
-            let Some(lower) = query.lower_from_key(inradius + query.bounds.radius, inradius) else { return Ok(None) };
+            let Some(lower) = query.lower_from_offset(inradius) else { return Ok(None) };
             let verdict = |query: &Query<'_, T, 3>| query.verdict(&Bracket { lower, upper: query.upper() });
             if let Some(stop) = verdict(query)
                 && query.verify()?

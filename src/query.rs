@@ -36,6 +36,10 @@ impl<T: Real, const N: usize> Default for Options<T, N> {
     }
 }
 
+/// A bracket of width ε pins the direction of a smooth minimum to about sqrt(ε) only. Running to a quarter of the tolerance
+/// halves that error and costs an iteration at most.
+const SHARPEN: f64 = 0.25;
+
 pub(crate) struct Query<'q, T, const N: usize> {
     a: &'q dyn Support<T, N>,
     q: &'q dyn Gauge<T, N>,
@@ -217,17 +221,25 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.bounds.lower_ball(-distance, self.margin(), self.per_ball)
     }
 
-    /// Lower bound from the lowest key of a closed surface around the origin whose facets have offsets of at least
-    /// `inradius`; `None` when the origin is not certainly inside (module `bounds`).
-    pub fn lower_from_key(&self, key: T, inradius: T) -> Option<T> {
+    /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is
+    /// not certainly inside (module `bounds`).
+    pub fn lower_from_offset(&self, offset: T) -> Option<T> {
         let margin = self.margin();
-        if !(inradius > margin) {
-            return None;
+        (offset > margin).then(|| self.bounds.lower_ball(offset, margin, self.per_ball))
+    }
+
+    /// The same for any Q, from (offset, key) of all facets of the surface.
+    pub fn lower_from_facets(&self, facets: impl Iterator<Item = (T, T)>) -> Option<T> {
+        let margin = self.margin();
+        let rounding = margin - self.bounds.support_error;
+        let (mut inradius, mut least) = (T::HUGE, T::HUGE);
+        for (offset, key) in facets {
+            // (e - rounding) / h, from e and e / h.
+            inradius = inradius.at_most(offset - rounding);
+            least = least.at_most(key - key * (rounding / offset));
         }
-        Some(match self.ball {
-            Some(radius) => self.bounds.lower_ball(key * radius - self.bounds.radius, margin, self.per_ball),
-            None => key * (T::one() - margin / inradius) * (T::one() - T::count(8) * T::ROUNDOFF),
-        })
+        let shrink = T::one() - self.bounds.support_error / inradius - T::count(12) * T::ROUNDOFF;
+        (inradius > margin).then(|| least * shrink)
     }
 
     /// Does the bracket end the query?
@@ -240,11 +252,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
                 return Some(Stop::Below);
             }
         }
-        self.tolerance().met(bracket).then_some(Stop::Met)
+        self.tolerance(T::of(SHARPEN)).met(bracket).then_some(Stop::Met)
     }
 
-    fn tolerance(&self) -> Tolerance<T> {
-        Tolerance { absolute: self.options.absolute, relative: self.options.relative }
+    fn tolerance(&self, share: T) -> Tolerance<T> {
+        Tolerance { absolute: self.options.absolute * share, relative: self.options.relative * share }
+    }
+
+    /// Is this bracket as narrow as asked for?
+    pub fn is_met(&self, bracket: &Bracket<T>) -> bool {
+        self.tolerance(T::one()).met(bracket)
     }
 
     /// Counts an iteration; true when the limit is reached.
@@ -293,7 +310,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             }
         };
         let upper = self.upper();
-        let met = self.tolerance().met(&Bracket { lower, upper });
+        let met = self.is_met(&Bracket { lower, upper });
         // An early verdict must survive the final check.
         let stop = match (stop, self.options.threshold) {
             (Stop::Below, Some(t)) if !(upper < t) => Stop::Rounding,

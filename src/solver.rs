@@ -18,6 +18,9 @@ pub struct Solver<'w, T, const N: usize> {
     pub(crate) polytope: Polytope<'w, T, N>,
 }
 
+/// Insertions per dimension that [`Solver::widen`] may spend.
+const WIDENINGS: usize = 8;
+
 /// What the expansion ended with: the lowest key, and its facet if it is known.
 struct Expanded<T> {
     stop: Stop,
@@ -114,23 +117,23 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
     }
 
-    /// Does the bracket, with this lowest key, end the query? First without the facets' inradius, which a general Q
-    /// needs and which costs a pass over the facets.
+    /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a
+    /// pass over the facets.
     fn verdict(&self, query: &Query<'_, T, N>, key: T) -> Option<Stop> {
         let upper = query.upper();
         let stop = query.verdict(&Bracket { lower: key, upper })?;
         if stop == Stop::Below {
             return Some(stop);
         }
-        let lower = query.lower_from_key(key, self.inradius(query, key))?;
-        query.verdict(&Bracket { lower, upper })
+        query.verdict(&Bracket { lower: self.lower(query, key)?, upper })
     }
 
-    /// The smallest offset of a facet: the radius of a ball that the surface does not meet.
-    fn inradius(&self, query: &Query<'_, T, N>, key: T) -> T {
+    /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
+    /// inside.
+    fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
         match query.ball {
-            Some(radius) => key * radius - query.bounds.radius,
-            None => self.polytope.facets().fold(T::HUGE, |least, f| least.at_most(f.offset)),
+            Some(radius) => query.lower_from_offset(key * radius - query.bounds.radius),
+            None => query.lower_from_facets(self.polytope.facets().map(|f| (f.offset, f.key))),
         }
     }
 
@@ -214,13 +217,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn conclude(&mut self, query: &mut Query<'_, T, N>, expanded: Expanded<T>) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
-        let expandable = self.polytope.peak_facets() > 0;
-        if !apart
-            && expandable
-            && let Some(lower) = query.lower_from_key(key, self.inradius(query, key))
-        {
-            let witness = self.touching_simplex(query, facet);
-            return query.answer(stop, lower, witness, &self.polytope);
+        if !apart && self.polytope.peak_facets() > 0 {
+            if let Err(failure) = self.widen(query, stop, key) {
+                return self.give_up(query, failure);
+            }
+            if let Some(lower) = self.lower(query, key) {
+                let facet = facet.filter(|_| query.ball.is_some());
+                let witness = self.touching_simplex(query, facet);
+                return query.answer(stop, lower, witness, &self.polytope);
+            }
         }
         // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end.
         if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations) {
@@ -235,6 +240,34 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             }
         }
         self.lower_by_vertices(query, stop)
+    }
+
+    /// For a Q that is not a ball the error of A's support function counts in proportion to the polytope's inradius, which
+    /// expansion towards a few directions of Q can leave small. Where that is what keeps the bracket open, the facets
+    /// nearest to the origin are pushed out too.
+    fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<(), Failure> {
+        if query.ball.is_some() || stop != Stop::Rounding {
+            return Ok(());
+        }
+        let bracket = |solver: &Self, query: &Query<'_, T, N>| {
+            solver.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
+        };
+        for _ in 0..WIDENINGS * N {
+            if bracket(self, query).is_some_and(|b| query.is_met(&b)) {
+                return Ok(());
+            }
+            let Some((index, normal, offset)) = self.polytope.nearest_facet() else { return Ok(()) };
+            let (vertex, height) = query.support(&normal)?;
+            let tolerance = self.polytope.resolution();
+            if height - offset <= tolerance + tolerance {
+                return Ok(());
+            }
+            match self.polytope.insert(index, vertex, tolerance) {
+                Some(Insertion::Done) => self.rate_fresh(query)?,
+                _ => return Ok(()),
+            }
+        }
+        Ok(())
     }
 
     /// The simplex of the surface that touches the largest d Q: for a ball, the one around the foot of the

@@ -4,8 +4,8 @@
 
 use super::generic::{aligned, not_null};
 use super::status::{
-    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER, QDIST_ERROR_WORKSPACE_SIZE,
-    from_workspace,
+    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
+    QDIST_ERROR_WORKSPACE_SIZE, from_workspace,
 };
 use crate::scalar::Real;
 use crate::solver::Solver;
@@ -28,7 +28,8 @@ const MAGIC: u32 = u32::from_le_bytes(*b"qdst");
 /// The block follows the header.
 const HEADER: usize = size_of::<qdist_solver>();
 
-const _: () = assert!(HEADER == 16 && HEADER.is_multiple_of(Layout::ALIGN) && align_of::<qdist_solver>() == Layout::ALIGN);
+const _: () =
+    assert!(HEADER == 16 && HEADER.is_multiple_of(Layout::ALIGN) && align_of::<qdist_solver>() == Layout::ALIGN);
 
 /// Header and block, in bytes.
 pub(super) fn bytes<T: Real, const N: usize>(max_vertices: u32, max_facets: u32) -> Check<u32> {

@@ -11,11 +11,12 @@
 //! not use: each entry point names all three.
 //!
 //! The functions are `unsafe` to call from Rust; the header states what C callers promise, once for all of them.
-#![allow(non_camel_case_types, clippy::missing_safety_doc)]
+// Fields whose name says all need no comment in the header.
+#![allow(missing_docs)]
+#![allow(non_camel_case_types, clippy::missing_safety_doc, clippy::neg_cmp_op_on_partial_ord)]
 
-pub mod f64;
-#[allow(missing_docs)]
 pub mod f32;
+pub mod f64;
 mod generic;
 pub mod handle;
 pub mod status;

@@ -70,7 +70,7 @@ pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
 /// number. Callbacks must not return it, nor INT32_MIN + 1.
-pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483648;
+pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 
 const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
 

@@ -172,6 +172,13 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         Some(at)
     }
 
+    /// The facet whose plane is nearest to the origin, with its normal and offset.
+    pub fn nearest_facet(&self) -> Option<(Index, Vector<T, N>, T)> {
+        let numbered = self.facets.iter().take(self.facet_top).enumerate().filter(|(_, f)| f.is_live());
+        let (number, f) = numbered.reduce(|best, f| if f.1.offset < best.1.offset { f } else { best })?;
+        Some((Index::try_from(number).ok()?, f.normal, f.offset))
+    }
+
     /// The facet with the smallest key, queued or not.
     pub fn lowest(&self) -> Option<&Facet<T, N>> {
         self.facets().reduce(|best, f| if f.key < best.key { f } else { best })

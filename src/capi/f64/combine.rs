@@ -45,7 +45,10 @@ pub unsafe extern "C" fn qdist_set_sum_f64(set: *mut qdist_set_f64, pair: *const
 
 /// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_difference_f64(set: *mut qdist_set_f64, pair: *const qdist_pair_f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_set_difference_f64(
+    set: *mut qdist_set_f64,
+    pair: *const qdist_pair_f64,
+) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill_pair(set, pair, qdist_difference_support_f64, qdist_difference_exhaustive_f64) })
 }
@@ -65,7 +68,8 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
         coordinates(matrix)?;
         coordinates(shift)?;
         let stretch = norm(matrix);
-        let reach = if inner.extent > 0.0 { length(stretch * (inner.extent + inner.radius) + norm(shift))? } else { 0.0 };
+        let reach =
+            if inner.extent > 0.0 { length(stretch * (inner.extent + inner.radius) + norm(shift))? } else { 0.0 };
         let own = error(inner, linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f64 as SupportFn<f64>);
         let made = qdist_set_f64 {
@@ -101,7 +105,11 @@ pub unsafe extern "C" fn qdist_sum_exhaustive_f64(user: *mut c_void, direction: 
 
 /// Support function of a difference.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_difference_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
+pub unsafe extern "C" fn qdist_difference_support_f64(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
     // SAFETY: what the header asks of the caller.
     status(unsafe { ask_pair(user, direction, point, -1.0, false) })
 }

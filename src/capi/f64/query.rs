@@ -11,11 +11,12 @@ use super::super::generic::{
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, QDIST_ERROR_DIMENSION, outcome, qdist_outcome, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, QDIST_ERROR_DIMENSION, outcome, qdist_outcome, qdist_status,
+    status,
 };
 use super::gauges::qdist_gauge_f64;
 use super::sets::{qdist_body_f64, qdist_set_f64};
-use crate::qset::{Ball, Gauge};
+use crate::qset::Ball;
 use crate::scalar::{Real, Vector};
 use crate::{Answer, Depth, Options, Outcome};
 

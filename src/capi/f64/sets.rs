@@ -7,11 +7,11 @@
 
 use super::super::generic::{CallbackSet, CallbackShape, aligned, coordinates, length, shared};
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, from_body, qdist_status, status};
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use crate::Body;
 use crate::depth::Matrix3;
 use crate::scalar::Vector;
 use crate::support::Symmetry;
-use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use core::ffi::c_void;
 
 /// Writes a point of the core that is farthest along `direction` to `point`.

@@ -9,8 +9,8 @@
 
 use super::super::generic::{aligned, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
-use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
 use crate::scalar::{Real, Vector};
 use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
 use core::ffi::c_void;
@@ -157,7 +157,10 @@ unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f64, point: *mut f6
 
 /// Makes a body of a sphere.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_sphere_f64(body: *mut qdist_body_f64, shape: *const qdist_sphere_f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_body_sphere_f64(
+    body: *mut qdist_body_f64,
+    shape: *const qdist_sphere_f64,
+) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill(body, shape, Some(qdist_sphere_support_f64)) })
 }
@@ -171,21 +174,30 @@ pub unsafe extern "C" fn qdist_body_box_f64(body: *mut qdist_body_f64, shape: *c
 
 /// Makes a body of an ellipsoid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_ellipsoid_f64(body: *mut qdist_body_f64, shape: *const qdist_ellipsoid_f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_body_ellipsoid_f64(
+    body: *mut qdist_body_f64,
+    shape: *const qdist_ellipsoid_f64,
+) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill(body, shape, Some(qdist_ellipsoid_support_f64)) })
 }
 
 /// Makes a body of a cylinder.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_cylinder_f64(body: *mut qdist_body_f64, shape: *const qdist_cylinder_f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_body_cylinder_f64(
+    body: *mut qdist_body_f64,
+    shape: *const qdist_cylinder_f64,
+) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill(body, shape, Some(qdist_cylinder_support_f64)) })
 }
 
 /// Makes a body of a capsule.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_capsule_f64(body: *mut qdist_body_f64, shape: *const qdist_capsule_f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_body_capsule_f64(
+    body: *mut qdist_body_f64,
+    shape: *const qdist_capsule_f64,
+) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill(body, shape, Some(qdist_capsule_support_f64)) })
 }

@@ -1,0 +1,281 @@
+// generated from f64/combine.rs by `make header`; do not edit
+//! SETS MADE OF SETS
+//!
+//! Sum, difference and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
+//! set that is made of them.
+
+use super::super::generic::{
+    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, length, shared, tiny,
+};
+use super::super::status::{Check, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status};
+use super::sets::{qdist_set_f32, room};
+use crate::scalar::Real;
+use core::ffi::c_void;
+
+/// Two sets of the same dimension.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_pair_f32 {
+    pub a: *const qdist_set_f32,
+    pub b: *const qdist_set_f32,
+    /// 2 to 6.
+    pub dimension: u32,
+}
+
+/// The image of a set under x -> matrix * x + translation.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_linear_f32 {
+    pub set: *const qdist_set_f32,
+    /// Row-major, `rows` x `columns`; any matrix.
+    pub matrix: *const f32,
+    /// The first `rows` numbers count.
+    pub translation: [f32; 6],
+    /// Dimension of the image, 2 to 6.
+    pub rows: u32,
+    /// Dimension of the set, 2 to 6.
+    pub columns: u32,
+}
+
+/// Makes the Minkowski sum { x + y : x in a, y in b }.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_sum_f32(set: *mut qdist_set_f32, pair: *const qdist_pair_f32) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill_pair(set, pair, qdist_sum_support_f32, qdist_sum_exhaustive_f32) })
+}
+
+/// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_difference_f32(
+    set: *mut qdist_set_f32,
+    pair: *const qdist_pair_f32,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill_pair(set, pair, qdist_difference_support_f32, qdist_difference_exhaustive_f32) })
+}
+
+/// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_linear_f32(set: *mut qdist_set_f32, map: *const qdist_linear_f32) -> qdist_status {
+    let fill = || {
+        aligned(set)?;
+        // SAFETY: what the header asks of the caller.
+        let (linear, inner, matrix) = unsafe {
+            let linear = shared(map)?;
+            (linear, part(linear.set, dimension(linear.columns)?)?, linear.matrix()?)
+        };
+        let n = dimension(linear.rows)?;
+        let shift = first(&linear.translation, n)?;
+        coordinates(matrix)?;
+        coordinates(shift)?;
+        let stretch = norm(matrix);
+        let reach =
+            if inner.extent > 0.0 { length(stretch * (inner.extent + inner.radius) + norm(shift))? } else { 0.0 };
+        let own = error(inner, linear.columns as usize);
+        let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f32 as SupportFn<f32>);
+        let made = qdist_set_f32 {
+            support: Some(qdist_linear_support_f32),
+            exhaustive: shortcuts,
+            user: map.cast_mut().cast(),
+            radius: 0.0,
+            extent: reach,
+            // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
+            error: (stretch * own + f32::count(4 * MAX_DIMENSION + 8) * f32::ROUNDOFF * reach) * 1.000001,
+            dimension: linear.rows,
+        };
+        // SAFETY: checked.
+        unsafe { set.write(made) };
+        Ok(())
+    };
+    status(fill())
+}
+
+/// Support function of a sum.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_sum_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_pair(user, direction, point, 1.0, false) })
+}
+
+/// The same, where a part has shortcuts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_sum_exhaustive_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_pair(user, direction, point, 1.0, true) })
+}
+
+/// Support function of a difference.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_difference_support_f32(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_pair(user, direction, point, -1.0, false) })
+}
+
+/// The same, where a part has shortcuts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_difference_exhaustive_f32(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_pair(user, direction, point, -1.0, true) })
+}
+
+/// Support function of a linear image.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_linear_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_linear(user, direction, point, false) })
+}
+
+/// The same, where the set has shortcuts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_linear_exhaustive_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_linear(user, direction, point, true) })
+}
+
+impl qdist_linear_f32 {
+    /// # Safety
+    /// If not NULL and aligned, `matrix` is valid for reads of all entries.
+    unsafe fn matrix<'a>(&self) -> Check<&'a [f32]> {
+        let length = dimension(self.rows)? * dimension(self.columns)?;
+        // SAFETY: the caller's promise.
+        unsafe { array(self.matrix, Some(length)) }
+    }
+}
+
+/// A part of a combination, for dimension `n`.
+///
+/// # Safety
+/// If not NULL and aligned, `set` is valid for reads.
+unsafe fn part<'a>(set: *const qdist_set_f32, n: usize) -> Check<&'a qdist_set_f32> {
+    // SAFETY: the caller's promise.
+    let set = unsafe { shared(set) }?;
+    set.support.ok_or(QDIST_ERROR_NULL)?;
+    for x in [set.radius, set.extent, set.error] {
+        length(x)?;
+    }
+    if set.dimension != 0 && set.dimension as usize != n { Err(QDIST_ERROR_DIMENSION) } else { Ok(set) }
+}
+
+/// The rounding error that a set states.
+fn error(set: &qdist_set_f32, n: usize) -> f32 {
+    if set.error > 0.0 { set.error } else { f32::count(16 * n) * f32::ROUNDOFF * set.extent }
+}
+
+fn norm(v: &[f32]) -> f32 {
+    dot(v, v).root() * 1.000001
+}
+
+/// # Safety
+/// Pointers that are neither NULL nor misaligned are valid.
+unsafe fn fill_pair(
+    set: *mut qdist_set_f32,
+    pair: *const qdist_pair_f32,
+    support: SupportFn<f32>,
+    exhaustive: SupportFn<f32>,
+) -> Check {
+    aligned(set)?;
+    // SAFETY: the caller's promise.
+    let (a, b, n) = unsafe {
+        let pair = shared(pair)?;
+        let n = dimension(pair.dimension)?;
+        (part(pair.a, n)?, part(pair.b, n)?, n)
+    };
+    let known = a.extent > 0.0 && b.extent > 0.0;
+    let extent = if known { (a.extent + b.extent) * 1.000001 } else { 0.0 };
+    let made = qdist_set_f32 {
+        support: Some(support),
+        exhaustive: a.exhaustive.or(b.exhaustive).map(|_| exhaustive),
+        user: pair.cast_mut().cast(),
+        radius: a.radius + b.radius,
+        extent,
+        error: ((error(a, n) + error(b, n)) * 1.000001 + 2.0 * f32::ROUNDOFF * extent).max(tiny()),
+        dimension: n as u32,
+    };
+    // SAFETY: checked.
+    unsafe { set.write(made) };
+    Ok(())
+}
+
+/// Asks a part for its point along `u`.
+///
+/// # Safety
+/// The set's functions work in dimension `u.len()`.
+unsafe fn ask(set: &qdist_set_f32, u: &[f32], exhaustive: bool) -> Check<[f32; MAX_DIMENSION]> {
+    let mut point = [f32::NAN; MAX_DIMENSION];
+    let slow = if exhaustive { set.exhaustive } else { None };
+    let function = slow.or(set.support).ok_or(QDIST_ERROR_NULL)?;
+    // SAFETY: the caller's promise; `point` has room for every dimension.
+    match unsafe { function(set.user, u.as_ptr(), point.as_mut_ptr()) } {
+        0 => Ok(point),
+        code => Err(code),
+    }
+}
+
+/// x + sign * y, with x along the direction in `a` and y along sign * direction in `b`.
+///
+/// # Safety
+/// Those of a support function.
+unsafe fn ask_pair(user: *mut c_void, direction: *const f32, point: *mut f32, sign: f32, exhaustive: bool) -> Check {
+    // SAFETY: what the header asks of the caller.
+    unsafe {
+        let pair = shared(user.cast::<qdist_pair_f32>().cast_const())?;
+        let n = dimension(pair.dimension)?;
+        let u = array(direction, Some(n))?;
+        room::<1>(point)?;
+        let mut turned = [0.0; MAX_DIMENSION];
+        for (to, &x) in turned.iter_mut().zip(u) {
+            *to = sign * x;
+        }
+        let x = ask(shared(pair.a)?, u, exhaustive)?;
+        let y = ask(shared(pair.b)?, first(&turned, n)?, exhaustive)?;
+        for (i, (x, y)) in x.iter().zip(&y).enumerate().take(n) {
+            point.add(i).write(x + sign * y);
+        }
+    }
+    Ok(())
+}
+
+/// # Safety
+/// Those of a support function.
+unsafe fn ask_linear(user: *mut c_void, direction: *const f32, point: *mut f32, exhaustive: bool) -> Check {
+    // SAFETY: what the header asks of the caller.
+    unsafe {
+        let map = shared(user.cast::<qdist_linear_f32>().cast_const())?;
+        let matrix = map.matrix()?;
+        let (rows, columns) = (dimension(map.rows)?, dimension(map.columns)?);
+        let u = array(direction, Some(rows))?;
+        room::<1>(point)?;
+        let set = shared(map.set)?;
+        let mut w = [0.0; MAX_DIMENSION];
+        for (row, &x) in matrix.chunks_exact(columns).zip(u) {
+            for (w, &m) in w.iter_mut().zip(row) {
+                *w += m * x;
+            }
+        }
+        let mut store = [0.0; _];
+        let w = in_range(first(&w, columns)?, &mut store);
+        let squared = dot(w, w);
+        // A direction that the map loses: every point of the set is as far as any other.
+        let axis = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let w = if squared > 0.0 { w } else { first(&axis, columns)? };
+        let mut x = ask(set, w, exhaustive)?;
+        if set.radius > 0.0 && squared > 0.0 {
+            let scale = set.radius / squared.root();
+            for (x, &w) in x.iter_mut().zip(w) {
+                *x += scale * w;
+            }
+        }
+        for (i, (row, t)) in matrix.chunks_exact(columns).zip(&map.translation).enumerate() {
+            point.add(i).write(dot(row, &x) + t);
+        }
+    }
+    Ok(())
+}

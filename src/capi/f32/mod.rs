@@ -1,0 +1,10 @@
+// generated from f64/mod.rs by `make header`; do not edit
+//! The C ABI for `f32`.
+
+pub mod combine;
+pub mod gauges;
+pub mod points;
+pub mod query;
+pub mod sets;
+pub mod shapes;
+pub mod solver;

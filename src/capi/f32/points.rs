@@ -1,0 +1,294 @@
+// generated from f64/points.rs by `make header`; do not edit
+//! HULLS OF POINTS
+//!
+//! The convex hull of a list of points, in any dimension, by looking at all of them; and large hulls in space, by
+//! climbing from vertex to vertex. The lists must outlive the set or body that is made of them.
+
+use super::super::generic::{
+    aligned, array, climb, coordinates, dimension, farthest, farthest3, in_range, in_space, reach, shared,
+};
+use super::super::handle::{self, qdist_solver};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_WORKSPACE_SIZE, from_graph, qdist_status, status,
+};
+use super::sets::{arguments, qdist_body_f32, qdist_set_f32, qdist_support_f32, room};
+use crate::scalar::Real;
+use crate::support::{HullGraph, Points, Support, graph_len};
+use core::ffi::c_void;
+
+/// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_points_f32 {
+    pub points: *const f32,
+    pub count: u32,
+    /// 2 to 6.
+    pub dimension: u32,
+}
+
+/// A large convex hull in space: points, and the graph of their hull's edges. Made by qdist_hull_prepare_f32. The
+/// graph is plain numbers without addresses: it may be kept in a file or in flash.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_hull_f32 {
+    /// Of dimension 3.
+    pub points: qdist_points_f32,
+    pub graph: *const u16,
+    /// Length of `graph`.
+    pub graph_len: u32,
+}
+
+// The macro QDIST_HULL_GRAPH_LEN.
+const _: () = assert!(graph_len(0) <= 16 && graph_len(1000) <= 11 * 1000 + 16 && graph_len(65535) <= 11 * 65535 + 16);
+
+/// Makes a set of a list of points of any dimension. Reads all of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_points_f32(set: *mut qdist_set_f32, shape: *const qdist_points_f32) -> qdist_status {
+    let fill = || {
+        aligned(set)?;
+        // SAFETY: what the header asks of the caller.
+        let points = unsafe { shared(shape) }?;
+        let n = dimension(points.dimension)?;
+        // SAFETY: what the header asks of the caller.
+        let list = unsafe { points.coordinates() }?;
+        coordinates(list)?;
+        let extent = reach(list, n);
+        let made = qdist_set_f32 {
+            support: Some(qdist_points_support_f32),
+            exhaustive: None,
+            user: shape.cast_mut().cast(),
+            radius: 0.0,
+            extent,
+            error: f32::count(2 * n + 2) * f32::ROUNDOFF * extent,
+            dimension: points.dimension,
+        };
+        // SAFETY: checked.
+        unsafe { set.write(made) };
+        Ok(())
+    };
+    status(fill())
+}
+
+/// Makes a body of a list of points of dimension 3. Reads all of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_points_f32(
+    body: *mut qdist_body_f32,
+    shape: *const qdist_points_f32,
+) -> qdist_status {
+    let supports: [qdist_support_f32; 2] = [Some(qdist_points3_support_f32), Some(qdist_points3_far_support_f32)];
+    let fill = || {
+        // SAFETY: what the header asks of the caller.
+        unsafe { fill(body, shared(shape)?, shape.cast(), supports, [None; 2]) }
+    };
+    status(fill())
+}
+
+/// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
+/// dimension 3, as workspace: max_vertices >= count and max_facets >= 2 * count + 16 always suffice. `count` is at
+/// most 65534, and QDIST_HULL_GRAPH_LEN(count) words suffice. Points inside the hull are legal.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_prepare_f32(
+    hull: *mut qdist_hull_f32,
+    points: *const f32,
+    count: u32,
+    graph: *mut u16,
+    graph_capacity: u32,
+    solver: *mut qdist_solver,
+) -> qdist_status {
+    let prepare = || {
+        aligned(hull)?;
+        aligned(graph)?;
+        let list = qdist_points_f32 { points, count, dimension: 3 };
+        // SAFETY: what the header asks of the caller.
+        let (coordinates, mut solver) = unsafe { (list.coordinates()?, handle::open::<f32, 3>(solver)?) };
+        // Checked before the first word is written.
+        if (graph_capacity as usize) < graph_len(count as usize) {
+            return Err(QDIST_ERROR_WORKSPACE_SIZE);
+        }
+        // SAFETY: what the header asks of the caller: as many words, which nothing else refers to. They need no initial value,
+        // but a reference does.
+        let words = unsafe {
+            graph.write_bytes(0, graph_capacity as usize);
+            core::slice::from_raw_parts_mut(graph, graph_capacity as usize)
+        };
+        solver.prepare_hull(in_space(coordinates), words).map_err(from_graph)?;
+        // SAFETY: checked.
+        unsafe { hull.write(qdist_hull_f32 { points: list, graph, graph_len: graph_capacity }) };
+        Ok(())
+    };
+    status(prepare())
+}
+
+/// Makes a body of a prepared hull. Reads all points.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_hull_f32(body: *mut qdist_body_f32, shape: *const qdist_hull_f32) -> qdist_status {
+    let supports: [qdist_support_f32; 2] = [Some(qdist_hull_support_f32), Some(qdist_hull_far_support_f32)];
+    // The points are the first member of the hull, so that a function of points serves for a hull.
+    let exhaustive: [qdist_support_f32; 2] = [Some(qdist_points3_support_f32), Some(qdist_points3_far_support_f32)];
+    let fill = || {
+        // SAFETY: what the header asks of the caller.
+        unsafe {
+            let hull = shared(shape)?;
+            hull.graph()?;
+            fill(body, &hull.points, shape.cast(), supports, exhaustive)
+        }
+    };
+    status(fill())
+}
+
+/// Support function of a list of points of any dimension.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_points_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    let ask = || {
+        // SAFETY: what the header asks of the caller.
+        let (list, n, u) = unsafe {
+            let shape = shared(user.cast::<qdist_points_f32>().cast_const())?;
+            let n = dimension(shape.dimension)?;
+            (shape.coordinates()?, n, array(direction, Some(n))?)
+        };
+        room::<1>(point)?;
+        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; _])).ok_or(QDIST_ERROR_ARGUMENT)?;
+        // SAFETY: `best` and the caller's room have n numbers.
+        unsafe { best.as_ptr().copy_to(point, n) };
+        Ok(())
+    };
+    status(ask())
+}
+
+/// Support function of a list of points of dimension 3.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_points3_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { scan::<false>(user, direction, point) })
+}
+
+/// The same, more accurate where all points are far from the origin compared with their spread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_points3_far_support_f32(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { scan::<true>(user, direction, point) })
+}
+
+/// Support function of a prepared hull.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { walk::<false>(user, direction, point) })
+}
+
+/// The same, more accurate where all points are far from the origin compared with their spread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_far_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { walk::<true>(user, direction, point) })
+}
+
+impl qdist_points_f32 {
+    /// # Safety
+    /// If not NULL and aligned, `points` is valid for reads of all coordinates.
+    #[inline(always)]
+    pub(super) unsafe fn coordinates<'a>(&self) -> Check<&'a [f32]> {
+        let length = (self.count as usize).checked_mul(self.dimension as usize);
+        // SAFETY: the caller's promise.
+        unsafe { array(self.points, length) }
+    }
+
+    /// The points in space.
+    ///
+    /// # Safety
+    /// As for [`coordinates`](Self::coordinates).
+    #[inline(always)]
+    unsafe fn in_space<'a>(&self) -> Check<&'a [[f32; 3]]> {
+        if self.dimension != 3 {
+            return Err(QDIST_ERROR_DIMENSION);
+        }
+        // SAFETY: the caller's promise.
+        Ok(in_space(unsafe { self.coordinates() }?))
+    }
+}
+
+impl qdist_hull_f32 {
+    /// # Safety
+    /// If not NULL and aligned, `graph` is valid for reads of `graph_len` words.
+    #[inline(always)]
+    unsafe fn graph<'a>(&self) -> Check<HullGraph<'a>> {
+        // SAFETY: the caller's promise.
+        HullGraph::from_words(unsafe { array(self.graph, Some(self.graph_len as usize)) }?).ok_or(QDIST_ERROR_ARGUMENT)
+    }
+}
+
+/// Fills a body with points; of each pair of functions the first is for points around the origin, the second for points
+/// far from it.
+///
+/// # Safety
+/// `user` is what the functions expect; if not NULL and aligned, `body` is valid for writes and the points for reads.
+unsafe fn fill(
+    body: *mut qdist_body_f32,
+    points: &qdist_points_f32,
+    user: *const c_void,
+    supports: [qdist_support_f32; 2],
+    exhaustive: [qdist_support_f32; 2],
+) -> Check {
+    aligned(body)?;
+    // SAFETY: the caller's promise.
+    let list = unsafe { points.in_space() }?;
+    let all = Points::new(list).map_err(super::super::status::from_shape)?;
+    let [near, far] = supports;
+    let [exhaustive_near, exhaustive_far] = exhaustive;
+    let center = all.center();
+    let set = qdist_set_f32 {
+        support: if center.is_some() { far } else { near },
+        exhaustive: if center.is_some() { exhaustive_far } else { exhaustive_near },
+        user: user.cast_mut(),
+        radius: 0.0,
+        extent: all.extent().at_least(super::super::generic::tiny()),
+        error: all.error().at_least(super::super::generic::tiny()),
+        dimension: 3,
+    };
+    let mut made = qdist_body_f32::at_origin(set);
+    if let Some((center, spread)) = center {
+        made.center = center.into();
+        made.spread = spread.at_least(super::super::generic::tiny());
+    }
+    // SAFETY: checked.
+    unsafe { body.write(made) };
+    Ok(())
+}
+
+/// # Safety
+/// Those of a support function.
+#[inline(always)]
+unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+    // SAFETY: the caller's promise.
+    let (list, u, room) = unsafe {
+        let (points, u, room) = arguments::<qdist_points_f32, 3>(user, direction, point)?;
+        (points.in_space()?, <[f32; 3]>::from(u), room)
+    };
+    let mut store = [0.0; _];
+    let u = in_range(&u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
+    let best = farthest3::<f32, FAR>(list, u).ok_or(QDIST_ERROR_ARGUMENT)?;
+    // SAFETY: `arguments` has checked it.
+    unsafe { room.write(*best) };
+    Ok(())
+}
+
+/// # Safety
+/// Those of a support function.
+#[inline(always)]
+unsafe fn walk<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+    // SAFETY: the caller's promise.
+    let (list, graph, u, room) = unsafe {
+        let (hull, u, room) = arguments::<qdist_hull_f32, 3>(user, direction, point)?;
+        (hull.points.in_space()?, hull.graph()?, <[f32; 3]>::from(u), room)
+    };
+    let mut store = [0.0; _];
+    let u = in_range(&u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
+    let best = climb::<f32, FAR>(list, &graph, u).ok_or(QDIST_ERROR_ARGUMENT)?;
+    // SAFETY: `arguments` has checked it.
+    unsafe { room.write(*best) };
+    Ok(())
+}

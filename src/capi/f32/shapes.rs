@@ -1,0 +1,253 @@
+// generated from f64/shapes.rs by `make header`; do not edit
+//! SHAPES IN SPACE
+//!
+//! Plain structs that you own. All are centred at the origin of the body's frame, with their axes along its axes. A size
+//! may be zero: flat shapes are legal.
+//!
+//! `qdist_body_..._f32` checks a shape, makes body->set point at it and sets the identity pose; the shape must outlive
+//! the body. `qdist_..._support_f32` is the support function that it puts there: user is the shape; the code that it returns is a
+//! qdist_status.
+
+use super::super::generic::{aligned, shared, tiny};
+use super::super::status::{Check, from_shape, qdist_status, status};
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use super::sets::{arguments, qdist_body_f32, qdist_set_f32, qdist_support_f32};
+use crate::scalar::{Real, Vector};
+use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
+use core::ffi::c_void;
+
+/// All points within `radius` of the origin.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_sphere_f32 {
+    pub radius: f32,
+}
+
+/// |x| <= half[0], |y| <= half[1], |z| <= half[2].
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_box_f32 {
+    pub half: [f32; 3],
+}
+
+/// The ellipsoid with these semi axes along x, y and z.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_ellipsoid_f32 {
+    pub semi_axes: [f32; 3],
+}
+
+/// x^2 + y^2 <= radius^2, |z| <= half_height.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_cylinder_f32 {
+    pub radius: f32,
+    pub half_height: f32,
+}
+
+/// All points within `radius` of the segment from (0, 0, -half_height) to (0, 0, half_height).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_capsule_f32 {
+    pub radius: f32,
+    pub half_height: f32,
+}
+
+/// The hull of the disk of `radius` at z = -half_height and the apex (0, 0, half_height).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_cone_f32 {
+    pub radius: f32,
+    pub half_height: f32,
+}
+
+/// A struct of this file as the set that it stands for.
+trait Shape {
+    type Set: Support<f32, 3>;
+    fn set(&self) -> Result<Self::Set, ShapeError>;
+}
+
+impl Shape for qdist_sphere_f32 {
+    type Set = Sphere<f32, 3>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        Sphere::new(self.radius)
+    }
+}
+
+impl Shape for qdist_box_f32 {
+    type Set = BoxShape<f32, 3>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        BoxShape::new(Vector::from(self.half))
+    }
+}
+
+impl Shape for qdist_ellipsoid_f32 {
+    type Set = Ellipsoid<f32, 3>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        Ellipsoid::new(Vector::from(self.semi_axes))
+    }
+}
+
+impl Shape for qdist_cylinder_f32 {
+    type Set = Cylinder<f32>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        Cylinder::new(self.radius, self.half_height)
+    }
+}
+
+impl Shape for qdist_capsule_f32 {
+    type Set = Capsule<f32>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        Capsule::new(self.radius, self.half_height)
+    }
+}
+
+impl Shape for qdist_cone_f32 {
+    type Set = Cone<f32>;
+    #[inline(always)]
+    fn set(&self) -> Result<Self::Set, ShapeError> {
+        Cone::new(self.radius, self.half_height)
+    }
+}
+
+/// Fills a body with a shape.
+///
+/// # Safety
+/// If not NULL and aligned, `body` is valid for writes and `shape` for reads.
+unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qdist_support_f32) -> Check {
+    aligned(body)?;
+    // SAFETY: the caller's promise.
+    let set = unsafe { shared(shape) }?.set().map_err(from_shape)?;
+    let symmetry = match set.symmetry() {
+        Symmetry::None => QDIST_SYMMETRY_NONE,
+        Symmetry::Axis => QDIST_SYMMETRY_AXIS,
+        Symmetry::Full => QDIST_SYMMETRY_FULL,
+    };
+    let set = qdist_set_f32 {
+        support,
+        exhaustive: None,
+        user: shape.cast_mut().cast(),
+        radius: set.radius(),
+        extent: set.extent().at_least(tiny()),
+        error: set.error().at_least(tiny()),
+        dimension: 3,
+    };
+    // SAFETY: not NULL, aligned, and the caller's promise.
+    unsafe { body.write(qdist_body_f32 { symmetry, ..qdist_body_f32::at_origin(set) }) };
+    Ok(())
+}
+
+/// Asks a shape. Checks it again: a shape that has been spoiled since ends the query with a code that says so.
+///
+/// # Safety
+/// Those of [`arguments`].
+#[inline(always)]
+unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+    // SAFETY: the caller's promise.
+    let (shape, u, room) = unsafe { arguments::<S, 3>(user, direction, point) }?;
+    let farthest = shape.set().map_err(from_shape)?.support(&u).map_err(|failure| failure.0)?;
+    // SAFETY: `arguments` has checked it.
+    unsafe { room.write(farthest.into()) };
+    Ok(())
+}
+
+/// Makes a body of a sphere.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_sphere_f32(
+    body: *mut qdist_body_f32,
+    shape: *const qdist_sphere_f32,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_sphere_support_f32)) })
+}
+
+/// Makes a body of a box.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_box_f32(body: *mut qdist_body_f32, shape: *const qdist_box_f32) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_box_support_f32)) })
+}
+
+/// Makes a body of an ellipsoid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_ellipsoid_f32(
+    body: *mut qdist_body_f32,
+    shape: *const qdist_ellipsoid_f32,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_ellipsoid_support_f32)) })
+}
+
+/// Makes a body of a cylinder.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_cylinder_f32(
+    body: *mut qdist_body_f32,
+    shape: *const qdist_cylinder_f32,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_cylinder_support_f32)) })
+}
+
+/// Makes a body of a capsule.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_capsule_f32(
+    body: *mut qdist_body_f32,
+    shape: *const qdist_capsule_f32,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_capsule_support_f32)) })
+}
+
+/// Makes a body of a cone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_cone_f32(body: *mut qdist_body_f32, shape: *const qdist_cone_f32) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { fill(body, shape, Some(qdist_cone_support_f32)) })
+}
+
+/// Support function of the origin: the core of a sphere.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_sphere_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_sphere_f32>(user, direction, point) })
+}
+
+/// Support function of a box.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_box_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_box_f32>(user, direction, point) })
+}
+
+/// Support function of an ellipsoid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_ellipsoid_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_ellipsoid_f32>(user, direction, point) })
+}
+
+/// Support function of a cylinder.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_cylinder_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_cylinder_f32>(user, direction, point) })
+}
+
+/// Support function of the segment of a capsule.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_capsule_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_capsule_f32>(user, direction, point) })
+}
+
+/// Support function of a cone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_cone_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask::<qdist_cone_f32>(user, direction, point) })
+}
