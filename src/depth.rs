@@ -92,11 +92,17 @@ impl<'a, T: Real> Body<'a, T> {
     /// The support point relative to the placed anchor.
     fn farthest(&self, u: &Vector<T, 3>, anchor: &Anchor<T>, exhaustive: bool) -> Result<Vector<T, 3>, Failure> {
         let local = self.rotation.tr_mul(u);
-        let mut point = if exhaustive { self.shape.exhaustive(&local)? } else { self.shape.support(&local)? };
-        if let Some(center) = &anchor.center {
-            point -= center;
-        }
-        Ok(self.rotation * point)
+        let point = if exhaustive { self.shape.exhaustive(&local) } else { self.shape.support(&local) };
+        // By coordinates, as the shape has stored them: wider loads would have to wait for its narrower stores.
+        let [x, y, z] = match &point {
+            Ok(p) => [p.x, p.y, p.z],
+            Err(failure) => return Err(*failure),
+        };
+        let [x, y, z] = match &anchor.center {
+            Some(center) => [x - center.x, y - center.y, z - center.z],
+            None => [x, y, z],
+        };
+        Ok(self.rotation.column(0) * x + self.rotation.column(1) * y + self.rotation.column(2) * z)
     }
 }
 

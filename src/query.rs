@@ -119,7 +119,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             self.a.support_with_witness(direction)?
         };
         let squared = point.dot(&point);
-        if !squared.finite() || !finite(&witness) {
+        if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
         }
         if squared > self.reach * self.reach {
@@ -240,6 +240,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         }
         let shrink = T::one() - self.bounds.support_error / inradius - T::count(12) * T::ROUNDOFF;
         (inradius > margin).then(|| least * shrink)
+    }
+
+    /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
+    /// without margins.
+    #[inline]
+    pub fn is_open(&self, key: T) -> bool {
+        let gap = Bracket { lower: key, upper: self.ratio };
+        self.options.threshold.is_none() && !self.tolerance(T::of(SHARPEN)).met(&gap)
     }
 
     /// Does the bracket end the query?

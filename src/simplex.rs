@@ -41,16 +41,19 @@ pub struct Corner<T, const N: usize> {
     pub weight: T,
 }
 
-/// The orthonormal basis q of the edges e_j = v_j - v_0, and R with e_j = sum over i <= j of R[i][j] q_i.
+/// Gram-Schmidt without square roots: orthogonal vectors q_i, and the unit upper triangle R with e_j = sum over i <= j of
+/// R[i][j] q_i for the edges e_j = v_j - v_0.
 struct Edges<T, const N: usize> {
     q: [Vector<T, N>; N],
+    /// 1 / |q_i|^2
+    inverse: [T; N],
     r: [[T; N]; N],
     count: usize,
 }
 
 impl<T: Real, const N: usize> Edges<T, N> {
     fn new() -> Self {
-        Edges { q: [Vector::zeros(); N], r: [[T::zero(); N]; N], count: 0 }
+        Edges { q: [Vector::zeros(); N], inverse: [T::zero(); N], r: [[T::zero(); N]; N], count: 0 }
     }
 
     /// Adds an edge; false when it lies in the span of the others up to `resolution`.
@@ -59,22 +62,20 @@ impl<T: Real, const N: usize> Edges<T, N> {
         let mut rest = *edge;
         for i in 0..N {
             if i < column {
-                let along = rest.dot(&self.q[i]);
-                rest.axpy(-along, &self.q[i], T::one());
+                let along = rest.dot(&self.q[i]) * self.inverse[i];
+                rest -= self.q[i] * along;
                 if let Some(entry) = self.r[i].get_mut(column) {
                     *entry = along;
                 }
             }
         }
-        let length = norm(&rest);
-        if !(length > resolution) {
+        let squared = rest.dot(&rest);
+        if !(squared > resolution * resolution) {
             return false;
         }
-        let (Some(q), Some(row)) = (self.q.get_mut(column), self.r.get_mut(column)) else { return false };
-        *q = rest * (T::one() / length);
-        if let Some(entry) = row.get_mut(column) {
-            *entry = length;
-        }
+        let (Some(q), Some(inverse)) = (self.q.get_mut(column), self.inverse.get_mut(column)) else { return false };
+        *q = rest;
+        *inverse = T::one() / squared;
         self.count += 1;
         true
     }
@@ -84,29 +85,25 @@ impl<T: Real, const N: usize> Edges<T, N> {
         let mut rest = *v;
         for i in 0..N {
             if i < self.count {
-                let along = rest.dot(&self.q[i]);
-                rest.axpy(-along, &self.q[i], T::one());
+                rest -= self.q[i] * (rest.dot(&self.q[i]) * self.inverse[i]);
             }
         }
         rest
     }
 
-    /// Solves R x = b by back substitution; b and x may be scalars or vectors.
+    /// Solves R x = b by back substitution; the entries may be scalars or vectors.
     fn back_substitute<X>(&self, b: &mut [X; N])
     where
         X: Copy + core::ops::Sub<Output = X> + core::ops::Mul<T, Output = X>,
     {
         for i in (0..N).rev() {
-            if i >= self.count {
-                continue;
-            }
             let mut x = b[i];
             for j in 0..N {
                 if j > i && j < self.count {
                     x = x - b[j] * self.r[i][j];
                 }
             }
-            b[i] = x * (T::one() / self.r[i][i]);
+            b[i] = x;
         }
     }
 }
@@ -208,7 +205,7 @@ impl<T: Real, const N: usize> Simplex<T, N> {
         for _ in 0..2 {
             let mut step = [T::zero(); N];
             for i in 0..N {
-                step[i] = -edges.q[i].dot(&point);
+                step[i] = -edges.q[i].dot(&point) * edges.inverse[i];
             }
             edges.back_substitute(&mut step);
             for i in 0..N {
@@ -276,8 +273,9 @@ impl<T: Real, const N: usize> Start<T, N> {
             if squared < whole * T::of(0.01) {
                 // Much was cancelled: once more, for what rounding left.
                 towards = outside(&towards);
+                return towards * (T::one() / norm(&towards));
             }
-            return towards * (T::one() / norm(&towards));
+            return towards * (T::one() / squared.root());
         }
         let mut best = Vector::zeros();
         let mut longest = T::zero();
@@ -318,9 +316,12 @@ impl<T: Real, const N: usize> Start<T, N> {
     }
 
     /// The N + 1 outward normals of the simplex (not unit): facet i is opposite vertex i. They are minus the gradients of
-    /// the barycentric coordinates, the rows of the inverse edge matrix: X = R^-1 Q^T.
+    /// the barycentric coordinates, the rows of the inverse edge matrix: X = R^-1 Q^-1.
     pub fn normals(&self) -> Vec<Vector<T, N>, MAX_CORNERS> {
         let mut rows = self.edges.q;
+        for i in 0..N {
+            rows[i] *= self.edges.inverse[i];
+        }
         self.edges.back_substitute(&mut rows);
         let mut normals = Vec::new();
         let _ = normals.push(rows.iter().fold(Vector::zeros(), |sum, row| sum + row));

@@ -120,6 +120,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a
     /// pass over the facets.
     fn verdict(&self, query: &Query<'_, T, N>, key: T) -> Option<Stop> {
+        if query.is_open(key) {
+            return None;
+        }
         let upper = query.upper();
         let stop = query.verdict(&Bracket { lower: key, upper })?;
         if stop == Stop::Below {

@@ -118,8 +118,8 @@ macro_rules! every_type_and_dimension {
     };
 }
 
-/// More iterations: the bracket stays true, and does not get worse by more than rounding. (Outside and on
-/// the surface a second phase begins when that has been found out, and the lower bound starts anew.)
+/// More iterations: the bracket stays true, and inside it does not get worse by more than rounding. (Outside and on the surface a
+/// second phase begins when that has been found out, and the bracket starts anew.)
 fn limits<T: Real, const N: usize>() {
     let size = (256, 4096);
     let mut memory = Memory::new::<T, N>(size.0, size.1);
@@ -130,9 +130,9 @@ fn limits<T: Real, const N: usize>() {
             let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
             holds(&k, &s, &options, size);
             let rounding = 4096.0 * T::ROUNDOFF.to_f64() * (1.0 + k.d.abs()) * N as f64;
-            let starts_anew = k.d <= 0.0;
+            let inside = k.d > 0.0;
             assert!(
-                (starts_anew || s.lower >= best.0 - rounding) && s.upper <= best.1 + rounding,
+                !inside || s.lower >= best.0 - rounding && s.upper <= best.1 + rounding,
                 "{} got worse at {limit}: {best:?} {s:?}",
                 k.name
             );

@@ -407,6 +407,15 @@ fn distances<T: Real, const N: usize>() {
         // Another Q measures distances as the Euclidean ball does.
         let cube = BoxGauge::new(vector::<T, N>([3.0; N])).unwrap();
         check("box gauge outside", &set, &cube, -length(&gap), asked::<T>());
+        // However long Q is in some direction.
+        for along in 0..N {
+            let long: [f64; N] = std::array::from_fn(|i| if i == along { 100.0 } else { 0.01 });
+            let slab = BoxGauge::new(vector::<T, N>(long)).unwrap();
+            check("long box gauge outside", &set, &slab, -length(&gap), asked::<T>());
+            let end: [f64; N] = std::array::from_fn(|i| if i == along { 1.0 } else { 0.0 });
+            let ray = Segment::new(vector::<T, N>(end)).unwrap();
+            check("segment gauge outside", &set, &ray, -length(&gap), asked::<T>());
+        }
     }
 }
 every_type_and_dimension!(outside_the_answer_is_minus_the_distance, distances);

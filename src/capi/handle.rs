@@ -31,6 +31,31 @@ const HEADER: usize = size_of::<qdist_solver>();
 const _: () =
     assert!(HEADER == 16 && HEADER.is_multiple_of(Layout::ALIGN) && align_of::<qdist_solver>() == Layout::ALIGN);
 
+/// The macros QDIST_WORKSPACE_BYTES_F64 and _F32 of the header.
+const fn promised(dimension: usize, scalar: usize, vertices: usize, facets: usize) -> usize {
+    let indices = (4 * dimension + 3).next_multiple_of(scalar);
+    HEADER + vertices * 2 * dimension * scalar + facets * ((dimension + 4) * scalar + indices)
+}
+
+/// Does the layout keep what the header promises? Both are linear in the capacities.
+const fn keeps<T: Real, const N: usize>() -> bool {
+    let (Ok(small), Ok(tall), Ok(wide)) =
+        (Layout::new::<T, N>(7, 12), Layout::new::<T, N>(1007, 12), Layout::new::<T, N>(7, 1012))
+    else {
+        return false;
+    };
+    let s = size_of::<T>();
+    HEADER + small.bytes() <= promised(N, s, 7, 12)
+        && HEADER + tall.bytes() <= promised(N, s, 1007, 12)
+        && HEADER + wide.bytes() <= promised(N, s, 7, 1012)
+}
+
+// On any target; that they are equal on this one is what ffi-tests/abi.c tests.
+const _: () = {
+    assert!(keeps::<f64, 2>() && keeps::<f64, 3>() && keeps::<f64, 4>() && keeps::<f64, 5>() && keeps::<f64, 6>());
+    assert!(keeps::<f32, 2>() && keeps::<f32, 3>() && keeps::<f32, 4>() && keeps::<f32, 5>() && keeps::<f32, 6>());
+};
+
 /// Header and block, in bytes.
 pub(super) fn bytes<T: Real, const N: usize>(max_vertices: u32, max_facets: u32) -> Check<u32> {
     let layout = layout::<T, N>(max_vertices, max_facets)?;

@@ -11,6 +11,8 @@
 //! not use: each entry point names all three.
 //!
 //! The functions are `unsafe` to call from Rust; the header states what C callers promise, once for all of them.
+// The comments are the header's text, where brackets are not links.
+#![allow(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
 // Fields whose name says all need no comment in the header.
 #![allow(missing_docs)]
 #![allow(non_camel_case_types, clippy::missing_safety_doc, clippy::neg_cmp_op_on_partial_ord)]

@@ -5,8 +5,9 @@
 //! may be zero: flat shapes are legal.
 //!
 //! `qdist_body_..._f32` checks a shape, makes body->set point at it and sets the identity pose; the shape must outlive
-//! the body. `qdist_..._support_f32` is the support function that it puts there: user is the shape; the code that it returns is a
-//! qdist_status.
+//! the body. `qdist_..._support_f32` is the support function that it puts there, that of the shape's core (without the ball
+//! that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
+//! shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set.
 
 use super::super::generic::{aligned, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
@@ -149,10 +150,11 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
 #[inline(always)]
 unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
     // SAFETY: the caller's promise.
-    let (shape, u, room) = unsafe { arguments::<S, 3>(user, direction, point) }?;
-    let farthest = shape.set().map_err(from_shape)?.support(&u).map_err(|failure| failure.0)?;
+    let (shape, &[x, y, z], room) = unsafe { arguments::<S>(user, direction, point) }?;
+    let set = shape.set().map_err(from_shape)?;
+    let farthest = set.support(&Vector::<f32, 3>::new(x, y, z)).map_err(|failure| failure.0)?;
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(farthest.into()) };
+    unsafe { room.write([farthest.x, farthest.y, farthest.z]) };
     Ok(())
 }
 
@@ -210,7 +212,7 @@ pub unsafe extern "C" fn qdist_body_cone_f32(body: *mut qdist_body_f32, shape: *
     status(unsafe { fill(body, shape, Some(qdist_cone_support_f32)) })
 }
 
-/// Support function of the origin: the core of a sphere.
+/// Support function of a sphere's core.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_sphere_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
@@ -224,7 +226,7 @@ pub unsafe extern "C" fn qdist_box_support_f32(user: *mut c_void, direction: *co
     status(unsafe { ask::<qdist_box_f32>(user, direction, point) })
 }
 
-/// Support function of an ellipsoid.
+/// Support function of an ellipsoid's core.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_ellipsoid_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
@@ -238,7 +240,7 @@ pub unsafe extern "C" fn qdist_cylinder_support_f32(user: *mut c_void, direction
     status(unsafe { ask::<qdist_cylinder_f32>(user, direction, point) })
 }
 
-/// Support function of the segment of a capsule.
+/// Support function of a capsule's core, a segment.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_capsule_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.

@@ -259,7 +259,7 @@ unsafe fn ask_linear(user: *mut c_void, direction: *const f64, point: *mut f64, 
                 *w += m * x;
             }
         }
-        let mut store = [0.0; _];
+        let mut store = [0.0; MAX_DIMENSION];
         let w = in_range(first(&w, columns)?, &mut store);
         let squared = dot(w, w);
         // A direction that the map loses: every point of the set is as far as any other.

@@ -5,8 +5,8 @@
 //! ordinary Euclidean depth. The structs and lists must outlive the gauge that is made of them.
 
 use super::super::generic::{
-    ValueFn, aligned, array, coordinates, dimension, dot, farthest, finite, first, in_range, largest, length, reach,
-    semi_axes, shared,
+    MAX_DIMENSION, ValueFn, aligned, array, coordinates, dimension, dot, farthest, finite, first, in_range, largest,
+    length, reach, semi_axes, shared,
 };
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_ROTATION, qdist_status, status};
 use super::points::qdist_points_f64;
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn qdist_vertices_gauge_value_f64(user: *mut c_void, direc
             let n = dimension(shape.dimension)?;
             (shape.coordinates()?, n, array(direction, Some(n))?)
         };
-        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; _])).ok_or(QDIST_ERROR_ARGUMENT)?;
+        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; MAX_DIMENSION])).ok_or(QDIST_ERROR_ARGUMENT)?;
         Ok(dot(best, u).at_least(0.0))
     };
     or_nan(value())

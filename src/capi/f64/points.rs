@@ -4,7 +4,8 @@
 //! climbing from vertex to vertex. The lists must outlive the set or body that is made of them.
 
 use super::super::generic::{
-    aligned, array, climb, coordinates, dimension, farthest, farthest3, in_range, in_space, reach, shared,
+    MAX_DIMENSION, aligned, array, climb, coordinates, dimension, farthest, farthest3, in_range, in_space, reach,
+    shared,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
@@ -146,7 +147,7 @@ pub unsafe extern "C" fn qdist_points_support_f64(user: *mut c_void, direction: 
             (shape.coordinates()?, n, array(direction, Some(n))?)
         };
         room::<1>(point)?;
-        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; _])).ok_or(QDIST_ERROR_ARGUMENT)?;
+        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; MAX_DIMENSION])).ok_or(QDIST_ERROR_ARGUMENT)?;
         // SAFETY: `best` and the caller's room have n numbers.
         unsafe { best.as_ptr().copy_to(point, n) };
         Ok(())
@@ -264,11 +265,11 @@ unsafe fn fill(
 unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
     // SAFETY: the caller's promise.
     let (list, u, room) = unsafe {
-        let (points, u, room) = arguments::<qdist_points_f64, 3>(user, direction, point)?;
-        (points.in_space()?, <[f64; 3]>::from(u), room)
+        let (points, u, room) = arguments::<qdist_points_f64>(user, direction, point)?;
+        (points.in_space()?, u, room)
     };
-    let mut store = [0.0; _];
-    let u = in_range(&u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
+    let mut store = [0.0; MAX_DIMENSION];
+    let u = in_range(u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
     let best = farthest3::<f64, FAR>(list, u).ok_or(QDIST_ERROR_ARGUMENT)?;
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(*best) };
@@ -281,11 +282,11 @@ unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f64, point:
 unsafe fn walk<const FAR: bool>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
     // SAFETY: the caller's promise.
     let (list, graph, u, room) = unsafe {
-        let (hull, u, room) = arguments::<qdist_hull_f64, 3>(user, direction, point)?;
-        (hull.points.in_space()?, hull.graph()?, <[f64; 3]>::from(u), room)
+        let (hull, u, room) = arguments::<qdist_hull_f64>(user, direction, point)?;
+        (hull.points.in_space()?, hull.graph()?, u, room)
     };
-    let mut store = [0.0; _];
-    let u = in_range(&u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
+    let mut store = [0.0; MAX_DIMENSION];
+    let u = in_range(u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
     let best = climb::<f64, FAR>(list, &graph, u).ok_or(QDIST_ERROR_ARGUMENT)?;
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(*best) };

@@ -134,23 +134,18 @@ pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *con
 }
 
 /// The parts of a support function's arguments, checked: the struct behind `user`, the direction, and room for the
-/// point.
+/// point. References only: a vector inside of the `Result` would be copied in pieces, which is slow.
 ///
 /// # Safety
-/// Each pointer that is neither NULL nor misaligned is valid for a `S`, for `N` numbers, and for writes of `N`
-/// numbers.
+/// Each pointer that is neither NULL nor misaligned is valid for a `S`, for three numbers, and for writes of three numbers.
 #[inline(always)]
-pub(super) unsafe fn arguments<'a, S, const N: usize>(
+pub(super) unsafe fn arguments<'a, S>(
     user: *mut c_void,
     direction: *const f64,
     point: *mut f64,
-) -> Check<(&'a S, Vector<f64, N>, *mut [f64; N])> {
+) -> Check<(&'a S, &'a [f64; 3], *mut [f64; 3])> {
     // SAFETY: the caller's promise.
-    unsafe {
-        let shape = shared(user.cast::<S>().cast_const())?;
-        let direction = shared(direction.cast::<[f64; N]>())?;
-        Ok((shape, Vector::from(*direction), room(point)?))
-    }
+    unsafe { Ok((shared(user.cast::<S>().cast_const())?, shared(direction.cast())?, room(point)?)) }
 }
 
 /// Room for a point; the pointer is checked, the memory not yet written.

@@ -1,0 +1,110 @@
+# The C side of qdist: libraries, header, C and C++ tests, proofs about the freestanding library. Rust alone needs only cargo.
+#
+#   make lib            freestanding static library (no std)       make demo          build and run examples/depth.c
+#   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
+#   make header         src/capi/f32 and include/qdist.h           make freestanding  a program without any libc
+#   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
+#   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
+#
+# Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
+# is possible, cbindgen by cargo.
+
+CARGO ?= cargo
+CC ?= cc
+CXX ?= c++
+CFLAGS_TEST = -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -g -Iinclude
+CXXFLAGS_TEST = -std=c++17 -Wall -Wextra -Wpedantic -Werror -O1 -g -Iinclude
+
+target := $(or $(CARGO_TARGET_DIR),target)
+lib := $(target)/release/libqdist.a
+lib_std := $(target)/debug/libqdist.a
+out := $(target)/c
+version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+# Runs apt-get as root when it may.
+apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
+      else echo "please install: $(1)" >&2; exit 1; fi
+
+.PHONY: all lib lib-std header header-check demo test test-c freestanding purity compare compiler clean
+all: lib
+
+compiler:
+	@command -v $(CC) >/dev/null && command -v $(CXX) >/dev/null || { $(call apt,build-essential); }
+	@mkdir -p $(out)
+
+lib: compiler
+	@echo "building $(lib) (no std, release)"
+	@$(CARGO) rustc --quiet --locked --lib --release --features capi,panic-handler --crate-type staticlib
+
+lib-std: compiler
+	@echo "building $(lib_std) (std, debug)"
+	@$(CARGO) rustc --quiet --locked --lib --features capi,std --crate-type staticlib
+
+header:
+	@echo "writing src/capi/f32/ and include/qdist.h"
+	@scripts/f32.sh
+	@scripts/header.sh
+
+header-check:
+	@echo "checking that src/capi/f32/ and include/qdist.h are fresh"
+	@scripts/f32.sh --check
+	@scripts/header.sh --check
+
+demo: lib
+	@echo "building and running examples/depth.c"
+	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/depth.c $(lib) -o $(out)/depth
+	@$(out)/depth
+
+# $(call c-tests,directory,extra flags,library,command in front)
+define c-tests
+	@mkdir -p $(out)/$(1)
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/smoke.c $(3) -lm -o $(out)/$(1)/smoke
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bad_arguments.c $(3) -lm -o $(out)/$(1)/bad_arguments
+	@$(CC) $(CFLAGS_TEST) $(2) -DCARGO_VERSION='"$(version)"' ffi-tests/abi.c $(3) -lm -o $(out)/$(1)/abi
+	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/smoke_cpp.cpp $(3) -lm -o $(out)/$(1)/smoke_cpp
+	@for test in smoke bad_arguments abi smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
+endef
+
+test-c: lib lib-std
+	@echo "C and C++ tests with the freestanding library"
+	$(call c-tests,plain,,$(lib),)
+	@echo "C and C++ tests with sanitizers and the hosted library"
+	$(call c-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std) -lpthread -ldl,)
+	@if command -v valgrind >/dev/null; then \
+	    echo "C and C++ tests under valgrind"; \
+	    for test in smoke bad_arguments abi smoke_cpp; do \
+	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
+	    done; \
+	else echo "valgrind is not installed: its runs are skipped"; fi
+comma := ,
+
+freestanding: lib
+	@if [ "$$(uname -sm)" = "Linux x86_64" ]; then \
+	    echo "linking and running a program without libc"; \
+	    $(CC) -std=c99 -O2 -Wall -Wextra -Werror -ffreestanding -fno-builtin -fno-stack-protector -nostdlib -static \
+	        -Wl,--gc-sections -Iinclude ffi-tests/freestanding.c $(lib) -o $(out)/freestanding && \
+	    $(out)/freestanding && echo "freestanding: 1 passed, 0 failed"; \
+	else echo "freestanding: skipped, the test knows Linux on x86-64 only"; fi
+
+purity: compiler
+	@scripts/purity.sh
+
+CASES ?= $(wildcard ../shared/data/convex/*.txt)
+OUT ?= out/compare
+compare: lib
+	@printf '#include <ccd/ccd.h>\n#include <fcl/fcl.h>\n#include <libqhullcpp/Qhull.h>\nint main() {}\n' | \
+	    $(CXX) -std=c++17 -fsyntax-only -x c++ $(peer_includes) - 2>/dev/null || \
+	    { echo "installing libccd, FCL and Qhull"; $(call apt,libccd-dev libfcl-dev libqhull-dev); }
+	@echo "building compare"
+	@$(CXX) -std=c++17 -O2 -Wall -Wextra -Iinclude $(peer_includes) ffi-tests/compare.cpp ffi-tests/peers.cpp ffi-tests/cases.cpp \
+	    $(lib) -lfcl -lccd -lqhullcpp -lqhull_r -o $(out)/compare
+	@mkdir -p $(OUT)
+	@echo "comparing; results go to $(OUT)"
+	@$(out)/compare $(OUT) $(CASES)
+	@python3 ffi-tests/compare_table.py $(OUT)/compare.csv $(CASES)
+peer_includes = -isystem /usr/include/eigen3
+
+test:
+	@scripts/test.sh
+
+clean:
+	@$(CARGO) clean

@@ -1,0 +1,417 @@
+/* Real answers through the C interface: brackets contain closed forms, in both scalar types. The file includes itself
+ * once for each. */
+#ifndef REAL
+
+#include "qdist.h"
+#include "test.h"
+
+#include <math.h>
+#include <string.h>
+
+#define JOIN_(name, suffix) name##suffix
+#define JOIN(name, suffix) JOIN_(name, suffix)
+#define Q(name) JOIN(name, SUFFIX)
+
+#define REAL double
+#define SUFFIX _f64
+#define BYTES QDIST_WORKSPACE_BYTES_F64
+#define WIDTH 1e-6
+#include "smoke.c"
+#undef REAL
+#undef SUFFIX
+#undef BYTES
+#undef WIDTH
+
+#define REAL float
+#define SUFFIX _f32
+#define BYTES QDIST_WORKSPACE_BYTES_F32
+#define WIDTH 1e-4
+#include "smoke.c"
+
+int main(void) {
+    smoke_f64();
+    smoke_f32();
+    CHECK(strcmp(qdist_status_string(QDIST_OK), "ok") == 0);
+    CHECK(strcmp(qdist_outcome_string(QDIST_CONVERGED), "converged") == 0);
+    return finish("smoke");
+}
+
+#else
+
+typedef Q(qdist_body) Q(body);
+typedef Q(qdist_depth) Q(depth);
+typedef Q(qdist_result) Q(result);
+
+static Q(depth) Q(ask)(qdist_solver *solver, const Q(body) *a, const Q(body) *b, const Q(qdist_options) *options) {
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_depth3)(solver, a, b, options, &depth) == QDIST_OK);
+    return depth;
+}
+
+/* Does the bracket contain d, and is it narrow? Near 0, rounding decides. */
+static int Q(brackets)(double lower, double upper, double d) {
+    return lower <= d && d <= upper && upper - lower <= 5 * WIDTH * fabs(d) + 0.05 * WIDTH;
+}
+
+/* Are the witness points depth * normal apart, and is the normal of unit length? */
+static int Q(consistent)(const Q(depth) *depth, double scale) {
+    double length = 0, miss = 0;
+    int i;
+    for (i = 0; i < 3; ++i) {
+        const double gap = depth->point_a[i] - depth->point_b[i] - depth->upper * depth->normal[i];
+        length += (double)depth->normal[i] * depth->normal[i];
+        miss += gap * gap;
+    }
+    return fabs(length - 1) < 1e-5 && sqrt(miss) < 0.01 * scale;
+}
+
+static void Q(pairs)(qdist_solver *solver) {
+    const Q(qdist_sphere) ball = {0.5};
+    const Q(qdist_box) cube = {{1.0, 2.0, 3.0}}, brick = {{0.5, 0.5, 0.5}}, plate = {{1.0, 1.0, 0.0}};
+    const Q(qdist_capsule) rod = {0.25, 1.0};
+    const Q(qdist_cylinder) can = {1.0, 2.0};
+    const Q(qdist_cone) cone = {1.0, 1.0};
+    const Q(qdist_ellipsoid) egg = {{1.0, 2.0, 4.0}};
+    Q(body) a, b;
+    Q(depth) depth;
+
+    /* Two spheres: sum of radii minus distance of centres (0.3, 0.4, 0 are 0.5 apart). */
+    CHECK(Q(qdist_body_sphere)(&a, &ball) == QDIST_OK && Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    b.translation[0] = 0.75;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 0.25) && depth.outcome == QDIST_CONVERGED);
+    CHECK(fabs(depth.normal[0] - 1) < 1e-5 && fabs(depth.point_a[0] - 0.5) < 1e-5 && fabs(depth.point_b[0] - 0.25) < 1e-5);
+    b.translation[0] = 2.0;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, -1.0) && depth.outcome == QDIST_SEPARATED);
+    CHECK(fabs(depth.point_a[0] - 0.5) < 1e-5 && fabs(depth.point_b[0] - 1.5) < 1e-5);
+    b.translation[0] = 1.0;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(depth.outcome == QDIST_TOUCHING && Q(brackets)(depth.lower, depth.upper, 0.0));
+    CHECK(Q(brackets)(Q(ask)(solver, &a, &a, NULL).lower, Q(ask)(solver, &a, &a, NULL).upper, 1.0));
+
+    /* Boxes along the axes: the smallest overlap. */
+    CHECK(Q(qdist_body_box)(&a, &cube) == QDIST_OK && Q(qdist_body_box)(&b, &brick) == QDIST_OK);
+    b.translation[1] = 2.25;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 0.25) && fabs(depth.normal[1] - 1) < 1e-5);
+    CHECK(Q(consistent)(&depth, 0.25) && depth.dimension == 3 && depth.facets_used > 3 && depth.support_calls > 0);
+    /* An eighth of a turn about z: half a diagonal, sqrt(1/2), sticks out. */
+    b.rotation[0] = b.rotation[4] = (REAL)sqrt(0.5);
+    b.rotation[1] = -(REAL)sqrt(0.5);
+    b.rotation[3] = (REAL)sqrt(0.5);
+    b.translation[1] = 2.5;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(fabs(depth.upper - (sqrt(0.5) - 0.5)) < WIDTH && fabs(depth.lower - (sqrt(0.5) - 0.5)) < WIDTH);
+    /* Corner against corner, apart: (1, 1, 1) from (1, 2, 3) to (2, 3, 4). */
+    CHECK(Q(qdist_body_box)(&b, &brick) == QDIST_OK);
+    b.translation[0] = 2.5, b.translation[1] = 3.5, b.translation[2] = 4.5;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(depth.outcome == QDIST_SEPARATED && fabs(depth.lower + sqrt(3.0)) < 1e-5 && fabs(depth.upper + sqrt(3.0)) < 1e-5);
+    CHECK(fabs(depth.point_a[2] - 3) < 1e-4 && fabs(depth.point_b[2] - 4) < 1e-4 && Q(consistent)(&depth, 1));
+
+    /* A sphere in a box. */
+    CHECK(Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    b.translation[0] = 0.5;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 1.0) && Q(consistent)(&depth, 1));
+
+    /* Crossed capsules: radii minus the distance of the axes. */
+    CHECK(Q(qdist_body_capsule)(&a, &rod) == QDIST_OK && Q(qdist_body_capsule)(&b, &rod) == QDIST_OK);
+    b.rotation[0] = b.rotation[8] = 0, b.rotation[2] = 1, b.rotation[6] = -1; /* z to x, x to -z */
+    b.translation[1] = 0.375;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 0.125) && fabs(depth.normal[1] - 1) < 1e-4);
+    b.translation[1] = 1.5;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, -1.0) && depth.outcome == QDIST_SEPARATED);
+
+    /* Solids of revolution on one axis: the cone's base in the can's lid, 0.5 deep. */
+    CHECK(Q(qdist_body_cylinder)(&a, &can) == QDIST_OK && Q(qdist_body_cone)(&b, &cone) == QDIST_OK);
+    b.translation[2] = 2.5;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 0.5) && fabs(depth.normal[2] - 1) < 1e-4);
+    CHECK(Q(qdist_body_ellipsoid)(&a, &egg) == QDIST_OK && Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    b.translation[2] = 4.25;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(Q(brackets)(depth.lower, depth.upper, 0.25) && depth.outcome == QDIST_CONVERGED);
+
+    /* Two plates in one plane: a flat difference. */
+    CHECK(Q(qdist_body_box)(&a, &plate) == QDIST_OK && Q(qdist_body_box)(&b, &plate) == QDIST_OK);
+    b.translation[0] = 1.0;
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(depth.outcome == QDIST_DEGENERATE && depth.dimension == 2 && depth.lower <= 0 && depth.upper >= 0);
+}
+
+static void Q(limits)(qdist_solver *solver) {
+    const Q(qdist_box) cube = {{1.0, 1.0, 1.0}};
+    const Q(qdist_ellipsoid) egg = {{1.0, 2.0, 4.0}};
+    Q(qdist_options) options;
+    Q(body) a, b;
+    Q(depth) depth;
+
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    CHECK(Q(qdist_body_box)(&a, &cube) == QDIST_OK && Q(qdist_body_ellipsoid)(&b, &egg) == QDIST_OK);
+    b.translation[0] = 1.0; /* depth 1, along x */
+    options.use_threshold = 1;
+    options.threshold = 0.5;
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.outcome == QDIST_ABOVE && depth.lower >= 0.5 && depth.lower <= 1 && depth.upper >= 1);
+    options.threshold = 2.5;
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.outcome == QDIST_BELOW && depth.upper < 2.5 && depth.upper >= 1);
+    options.use_threshold = 0;
+    options.max_iterations = 1;
+    b.rotation[0] = b.rotation[4] = 0.6f, b.rotation[1] = -0.8f, b.rotation[3] = 0.8f;
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.outcome == QDIST_ITERATIONS && depth.lower < depth.upper && depth.iterations <= 1);
+    options.max_iterations = 0;
+    options.absolute = (REAL)0.25;
+    options.relative = 0;
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.outcome == QDIST_CONVERGED && depth.upper - depth.lower <= 0.25);
+    options.use_guess = 1;
+    options.absolute = 0;
+    options.relative = (REAL)WIDTH;
+    memcpy(options.guess, depth.normal, sizeof depth.normal);
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.outcome == QDIST_CONVERGED && depth.upper >= 1 && depth.upper - depth.lower <= WIDTH * depth.upper);
+}
+
+/* A regular hexagonal prism of radius 1 and height 2: a shape that the library does not know. Counts its calls. */
+static int32_t Q(prism)(void *user, const REAL *direction, REAL *point) {
+    int *calls = user;
+    double best = -1e30;
+    int i;
+    ++*calls;
+    for (i = 0; i < 6; ++i) {
+        const double x = cos(i * 1.0471975511965976), y = sin(i * 1.0471975511965976);
+        if (x * direction[0] + y * direction[1] > best) {
+            best = x * direction[0] + y * direction[1];
+            point[0] = (REAL)x;
+            point[1] = (REAL)y;
+        }
+    }
+    point[2] = direction[2] < 0 ? -1 : 1;
+    return 0;
+}
+
+static int32_t Q(failing)(void *user, const REAL *direction, REAL *point) {
+    int *left = user;
+    point[0] = direction[0] < 0 ? -1 : 1, point[1] = direction[1] < 0 ? -1 : 1, point[2] = direction[2] < 0 ? -1 : 1;
+    return (*left)-- > 0 ? 0 : 77;
+}
+
+/* Writes less than it should. */
+static int32_t Q(lazy)(void *user, const REAL *direction, REAL *point) {
+    (void)user;
+    point[0] = direction[0];
+    return 0;
+}
+
+static REAL Q(negative)(void *user, const REAL *direction) {
+    (void)user;
+    return direction[0];
+}
+
+static void Q(callbacks)(qdist_solver *solver) {
+    const Q(qdist_sphere) ball = {0.5};
+    int calls = 0, left;
+    Q(qdist_set) set;
+    Q(qdist_gauge) gauge;
+    Q(body) a, b;
+    Q(depth) depth;
+    Q(result) result;
+
+    memset(&set, 0, sizeof set);
+    set.support = Q(prism);
+    set.user = &calls;
+    CHECK(Q(qdist_body_set)(&a, &set) == QDIST_OK && Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(fabs(depth.upper - (sqrt(0.75) + 0.5)) < 2 * WIDTH && fabs(depth.lower - (sqrt(0.75) + 0.5)) < 2 * WIDTH);
+    CHECK(calls > 0 && depth.outcome == QDIST_CONVERGED);
+    a.set.radius = (REAL)0.125; /* a margin */
+    depth = Q(ask)(solver, &a, &b, NULL);
+    CHECK(fabs(depth.upper - (sqrt(0.75) + 0.625)) < 2 * WIDTH);
+
+    set.support = Q(failing);
+    set.user = &left;
+    set.extent = 2;
+    CHECK(Q(qdist_body_set)(&a, &set) == QDIST_OK);
+    for (left = 0; left < 8; ++left) {
+        int before = left, after;
+        memset(&depth, 0, sizeof depth);
+        depth.struct_size = sizeof depth;
+        after = Q(qdist_depth3)(solver, &a, &b, NULL, &depth);
+        if (after == QDIST_OK) break; /* solved before the failure */
+        CHECK(after == QDIST_ERROR_CALLBACK && depth.outcome == QDIST_SUPPORT_FAILED && depth.callback_code == 77);
+        CHECK(depth.lower <= 1.5 && depth.upper >= 1.5);
+        left = before;
+    }
+    CHECK(left > 0);
+
+    set.support = Q(lazy);
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_solve3)(solver, &set, NULL, NULL, &result) == QDIST_ERROR_CALLBACK);
+    CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE && result.outcome == QDIST_SUPPORT_FAILED);
+    left = 1000000;
+    set.support = Q(failing);
+    memset(&gauge, 0, sizeof gauge);
+    gauge.value = Q(negative);
+    gauge.extent = 1;
+    CHECK(Q(qdist_solve3)(solver, &set, &gauge, NULL, &result) == QDIST_ERROR_CALLBACK);
+    CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE);
+}
+
+static void Q(gauges)(qdist_solver *solver) {
+    const Q(qdist_box) cube = {{1.0, 2.0, 4.0}};
+    const REAL turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1}; /* x to y */
+    const REAL corners[6] = {2, 0, 0, 0, 0, 2};
+    const Q(qdist_points) list = {corners, 2, 3};
+    const Q(qdist_segment_gauge) ray = {{1.0, 1.0, 1.0, 0, 0, 0}, 3}, across = {{0, 0, 0.5, 0, 0, 0}, 3};
+    const Q(qdist_box_gauge) box = {{0.5, 0.5, 4.0, 0, 0, 0}, 3};
+    const Q(qdist_cross_gauge) cross = {{0.5, 0.5, 8.0, 0, 0, 0}, 3};
+    const Q(qdist_ellipsoid_gauge) egg = {{1.0, 4.0, 1.0, 0, 0, 0}, turn, 3}, plain = {{0.5, 1.0, 8.0, 0, 0, 0}, NULL, 3};
+    Q(qdist_gauge) gauge;
+    Q(body) body;
+    Q(result) result;
+    Q(qdist_set) set;
+
+    CHECK(Q(qdist_body_box)(&body, &cube) == QDIST_OK);
+    set = body.set;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+#define SOLVE(expected)                                                          \
+    CHECK(Q(qdist_solve3)(solver, &set, &gauge, NULL, &result) == QDIST_OK);     \
+    CHECK(Q(brackets)(result.lower, result.upper, expected) && result.outcome == QDIST_CONVERGED)
+    CHECK(Q(qdist_gauge_ball)(&gauge, (REAL)0.5) == QDIST_OK);
+    SOLVE(2.0);
+    CHECK(result.point_count >= 1 && result.point_count <= 4 && fabs(fabs(result.direction[0]) - 1) < 1e-4);
+    CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK); /* leaves the box at (1, 1, 1) */
+    SOLVE(1.0);
+    CHECK(Q(qdist_gauge_segment)(&gauge, &across) == QDIST_OK);
+    SOLVE(8.0);
+    CHECK(Q(qdist_gauge_box)(&gauge, &box) == QDIST_OK); /* 1/0.5, 2/0.5, 4/4 */
+    SOLVE(1.0);
+    CHECK(Q(qdist_gauge_cross)(&gauge, &cross) == QDIST_OK); /* 4/8 */
+    SOLVE(0.5);
+    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &egg) == QDIST_OK); /* semi axis 4 along -x */
+    SOLVE(0.25);
+    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &plain) == QDIST_OK); /* 1/0.5, 2/1, 4/8 */
+    SOLVE(0.5);
+    gauge.extent = 0; /* unknown: the library asks */
+    SOLVE(0.5);
+    CHECK(Q(qdist_gauge_vertices)(&gauge, &list) == QDIST_OK); /* 1/2 along x, 4/2 along z */
+    SOLVE(0.5);
+#undef SOLVE
+}
+
+/* Any dimension: a cube of half size 1 around (0.25, 0, ...) by its corners, and a box made as a sum of segments. */
+static void Q(dimensions)(void) {
+    static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 256, 40000)];
+    typedef qdist_status (*init)(void *, uint32_t, uint32_t, uint32_t, qdist_solver **);
+    typedef qdist_status (*solve)(qdist_solver *, const Q(qdist_set) *, const Q(qdist_gauge) *, const Q(qdist_options) *,
+                                  Q(result) *);
+    const init inits[] = {Q(qdist_solver_init2), Q(qdist_solver_init3), Q(qdist_solver_init4), Q(qdist_solver_init5),
+                          Q(qdist_solver_init6)};
+    const solve solves[] = {Q(qdist_solve2), Q(qdist_solve3), Q(qdist_solve4), Q(qdist_solve5), Q(qdist_solve6)};
+    REAL corners[64 * 6];
+    uint32_t n, i, k;
+
+    for (n = 2; n <= 6; ++n) {
+        Q(qdist_points) list = {NULL, 0, 0};
+        Q(qdist_set) cube, shifted, difference;
+        Q(qdist_pair) pair;
+        Q(qdist_linear) map;
+        Q(qdist_segment_gauge) ray;
+        Q(qdist_gauge) gauge;
+        Q(result) result;
+        REAL matrix[36];
+        qdist_solver *solver = NULL;
+
+        CHECK(inits[n - 2](memory, sizeof memory, 256, n < 5 ? 4000 : 40000, &solver) == QDIST_OK && solver != NULL);
+        for (i = 0; i < 1u << n; ++i)
+            for (k = 0; k < n; ++k) corners[i * n + k] = (REAL)((i >> k & 1 ? 1 : -1) + (k == 0 ? 0.25 : 0));
+        list.points = corners, list.count = 1u << n, list.dimension = n;
+        CHECK(Q(qdist_set_points)(&cube, &list) == QDIST_OK);
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        CHECK(solves[n - 2](solver, &cube, NULL, NULL, &result) == QDIST_OK);
+        CHECK(Q(brackets)(result.lower, result.upper, 0.75) && fabs(result.direction[0] + 1) < 1e-4);
+
+        memset(&ray, 0, sizeof ray);
+        ray.end[0] = (REAL)0.5, ray.dimension = n;
+        CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK);
+        CHECK(solves[n - 2](solver, &cube, &gauge, NULL, &result) == QDIST_OK);
+        CHECK(Q(brackets)(result.lower, result.upper, 2.5));
+
+        /* cube - (cube mapped by 1/2, and moved by -1 along the last axis): half sizes 1.5 around (0.125, ..., 1). */
+        memset(matrix, 0, sizeof matrix);
+        for (k = 0; k < n; ++k) matrix[k * n + k] = (REAL)0.5;
+        memset(&map, 0, sizeof map);
+        map.set = &cube, map.matrix = matrix, map.rows = map.columns = n;
+        map.translation[n - 1] = -1;
+        CHECK(Q(qdist_set_linear)(&shifted, &map) == QDIST_OK);
+        pair.a = &cube, pair.b = &shifted, pair.dimension = n;
+        CHECK(Q(qdist_set_difference)(&difference, &pair) == QDIST_OK);
+        CHECK(solves[n - 2](solver, &difference, NULL, NULL, &result) == QDIST_OK);
+        CHECK(Q(brackets)(result.lower, result.upper, 0.5) && fabs(result.direction[n - 1] + 1) < 1e-4);
+        CHECK(Q(qdist_set_sum)(&difference, &pair) == QDIST_OK); /* around (0.375, ..., -1) */
+        CHECK(solves[n - 2](solver, &difference, NULL, NULL, &result) == QDIST_OK);
+        CHECK(Q(brackets)(result.lower, result.upper, 0.5) && fabs(result.direction[n - 1] - 1) < 1e-4);
+    }
+}
+
+/* A ball of 400 points by its graph, against the list. */
+static void Q(hulls)(qdist_solver *solver) {
+    enum { COUNT = 400 };
+    static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, COUNT, 2 * COUNT + 16)];
+    static REAL points[3 * COUNT];
+    static uint16_t graph[QDIST_HULL_GRAPH_LEN(COUNT)];
+    Q(qdist_points) list;
+    Q(qdist_hull) hull;
+    Q(body) a, b, c;
+    Q(depth) one, two;
+    qdist_solver *workspace;
+    int i, far;
+
+    for (far = 0; far < 2; ++far) {
+        for (i = 0; i < COUNT; ++i) {
+            const double z = 1 - (2 * i + 1.0) / COUNT, r = sqrt(1 - z * z), t = 2.399963229728653 * i;
+            points[3 * i] = (REAL)(r * cos(t) + far * 64);
+            points[3 * i + 1] = (REAL)(r * sin(t));
+            points[3 * i + 2] = (REAL)z;
+        }
+        CHECK(Q(qdist_solver_init3)(memory, sizeof memory, COUNT, 2 * COUNT + 16, &workspace) == QDIST_OK);
+        CHECK(Q(qdist_hull_prepare)(&hull, points, COUNT, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_OK);
+        list.points = points, list.count = COUNT, list.dimension = 3;
+        CHECK(Q(qdist_body_hull)(&a, &hull) == QDIST_OK && Q(qdist_body_points)(&b, &list) == QDIST_OK);
+        CHECK((a.spread > 0) == far && (b.spread > 0) == far);
+        c = b;
+        c.translation[0] = (REAL)0.5, c.translation[1] = (REAL)0.75;
+        one = Q(ask)(solver, &a, &c, NULL);
+        two = Q(ask)(solver, &b, &c, NULL);
+        CHECK(one.lower <= two.upper && two.lower <= one.upper && one.upper - one.lower < 1e-3);
+        CHECK(fabs(one.upper - (2 - sqrt(0.25 + 0.5625))) < 0.05 && Q(consistent)(&one, 1));
+    }
+    points[3] = points[0], points[4] = points[1], points[5] = points[2];
+    CHECK(Q(qdist_hull_prepare)(&hull, points, 3, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_ERROR_FLAT);
+}
+
+static void Q(smoke)(void) {
+    static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 128, 256)];
+    qdist_solver *solver = NULL;
+    CHECK(Q(qdist_solver_init3)(memory, BYTES(3, 128, 256), 128, 256, &solver) == QDIST_OK);
+    if (solver == NULL) return;
+    Q(pairs)(solver);
+    Q(limits)(solver);
+    Q(callbacks)(solver);
+    Q(gauges)(solver);
+    Q(hulls)(solver);
+    Q(dimensions)();
+}
+
+#endif
