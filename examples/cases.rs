@@ -112,6 +112,10 @@ fn main() {
     let verbose = args.iter().any(|a| a == "-v");
     let single = args.iter().any(|a| a == "-f32");
     for file in args.iter().filter(|a| !a.starts_with('-')) {
-        if single { run::<f32>(file, 1e-4, 1e-5, verbose) } else { run::<f64>(file, std::env::var("REL").map_or(1e-6, |x| x.parse().unwrap()), 1e-12, verbose) }
+        if single {
+            run::<f32>(file, 1e-4, 1e-5, verbose)
+        } else {
+            run::<f64>(file, std::env::var("REL").map_or(1e-6, |x| x.parse().unwrap()), 1e-12, verbose)
+        }
     }
 }

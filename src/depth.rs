@@ -37,10 +37,18 @@ pub struct Body<'a, T: Real> {
     shape: &'a dyn Support<T, 3>,
     rotation: Matrix3<T>,
     translation: Vector<T, 3>,
+    /// Radius of the ball swept over the placed core.
+    ball: T,
+    /// Radius of the ball that goes into the support points instead: see `Support::rolling_radius`.
+    inflation: T,
 }
 
+/// A matrix whose columns are orthonormal to so many roundoffs leaves balls what they are.
+const SKEW_ROUNDOFFS: usize = 32;
+
 impl<'a, T: Real> Body<'a, T> {
-    /// Places a shape. The matrix is used as it is given; ball terms stay balls.
+    /// Places a shape. The matrix is used as it is given: the body is the image of the shape, except that balls (spheres,
+    /// the rounding of capsules, margins) stay balls.
     ///
     /// # Errors
     /// [`BodyError`], naming what is wrong.
@@ -52,28 +60,39 @@ impl<'a, T: Real> Body<'a, T> {
         if !rotation.iter().all(|x| x.finite()) || !finite(&translation) {
             return Err(BodyError::NonFinite);
         }
-        let off = rotation.transpose() * rotation - Matrix3::identity();
-        let tolerance = T::of(1e-4);
-        if off.iter().any(|x| x.abs() > tolerance) || rotation.determinant() < T::zero() {
+        let skew = skew(&rotation);
+        if !(skew <= T::of(1e-4)) || rotation.determinant() < T::zero() {
             return Err(BodyError::Rotation);
         }
-        Ok(Body { shape, rotation, translation })
+        let mut body = Body { rotation, ..Body::at(shape, translation) };
+        if skew > T::count(SKEW_ROUNDOFFS) * T::ROUNDOFF {
+            body.inflation = shape.rolling_radius();
+            body.ball -= body.inflation;
+        }
+        Ok(body)
     }
 
     /// Places a shape without turning it.
     pub fn at(shape: &'a dyn Support<T, 3>, translation: Vector<T, 3>) -> Self {
-        Body { shape, rotation: Matrix3::identity(), translation }
+        Body { shape, rotation: Matrix3::identity(), translation, ball: shape.radius(), inflation: T::zero() }
     }
 
     /// Where the body's support points are measured from, in its own frame, and an upper bound of the core's distance
     /// from there: the shape's own word, else half the diagonal of the box that six support calls draw around it.
     fn anchor(&self) -> Result<Anchor<T>, Failure> {
+        let mut anchor = self.core_anchor()?;
+        anchor.extent += self.inflation;
+        anchor.error += T::count(8) * T::ROUNDOFF * self.inflation;
+        Ok(anchor)
+    }
+
+    fn core_anchor(&self) -> Result<Anchor<T>, Failure> {
         if let Some((center, extent)) = self.shape.center() {
-            return Ok(Anchor { center: Some(center), extent });
+            return Ok(Anchor { center: Some(center), extent, error: self.shape.error() });
         }
         let known = self.shape.extent();
         if known > T::zero() {
-            return Ok(Anchor { center: None, extent: known });
+            return Ok(Anchor { center: None, extent: known, error: self.shape.error() });
         }
         let mut corner = Vector::<T, 3>::zeros();
         for i in 0..3 {
@@ -86,7 +105,9 @@ impl<'a, T: Real> Body<'a, T> {
             }
         }
         let extent = norm(&corner);
-        if extent.finite() { Ok(Anchor { center: None, extent }) } else { Err(Failure(NOT_FINITE)) }
+        // What `Support::error` would be, had the shape known its extent.
+        let error = self.shape.error().at_least(T::count(48) * T::ROUNDOFF * extent);
+        if extent.finite() { Ok(Anchor { center: None, extent, error }) } else { Err(Failure(NOT_FINITE)) }
     }
 
     /// The support point relative to the placed anchor.
@@ -102,14 +123,30 @@ impl<'a, T: Real> Body<'a, T> {
             Some(center) => [x - center.x, y - center.y, z - center.z],
             None => [x, y, z],
         };
+        let [x, y, z] = if self.inflation > T::zero() {
+            let swell = self.inflation / norm(&local);
+            [x + local.x * swell, y + local.y * swell, z + local.z * swell]
+        } else {
+            [x, y, z]
+        };
         Ok(self.rotation.column(0) * x + self.rotation.column(1) * y + self.rotation.column(2) * z)
     }
+}
+
+/// The largest entry of |R^T R - I|.
+fn skew<T: Real>(rotation: &Matrix3<T>) -> T {
+    let [x, y, z] = [rotation.column(0), rotation.column(1), rotation.column(2)];
+    let lengths = [x.dot(&x) - T::one(), y.dot(&y) - T::one(), z.dot(&z) - T::one()];
+    let angles = [x.dot(&y), y.dot(&z), z.dot(&x)];
+    lengths.iter().chain(&angles).fold(T::zero(), |most, v| most.at_least(v.abs()))
 }
 
 /// Where a body is measured from: the origin of its frame, or a point near the shape when that is far away.
 struct Anchor<T: Real> {
     center: Option<Vector<T, 3>>,
     extent: T,
+    /// Error of the shape's support function.
+    error: T,
 }
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
@@ -139,8 +176,8 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         // at most 5.2 u, which costs that times the diameter 2 E; the anchor's subtraction u E; the product with the rotation 5.2 u E.
         // The two additions cost u times the sizes of their sums, the rounding of `offset` u of its own (2 u when
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
-        let error = (a.shape.error() + b.shape.error() + (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF)
-            * T::of(1.01);
+        let error =
+            (on_a.error + on_b.error + (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF) * T::of(1.01);
         Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error })
     }
 
@@ -189,14 +226,13 @@ impl<T: Real> Pair<'_, '_, T> {
         if !(aside <= allowed) || self.on_a.center.is_some() || self.on_b.center.is_some() {
             return None;
         }
-        let stretch = |body: &Body<'_, T>| {
-            let off = body.rotation.transpose() * body.rotation - Matrix3::identity();
-            off.iter().fold(T::zero(), |m, x| m.at_least(x.abs()))
-        };
-        if !(stretch(self.a).at_least(stretch(self.b)) <= allowed) {
+        let stretched = skew(&self.a.rotation).at_least(skew(&self.b.rotation));
+        if !(stretched <= allowed) {
             return None;
         }
-        self.error += allowed * T::count(4) * self.extent;
+        // Each deviation moves points of the bodies by at most itself times sqrt(3) and their size; the roundoffs are
+        // those of measuring it.
+        self.error += (aside + stretched + T::count(4) * T::ROUNDOFF) * T::count(2) * self.extent;
         Some(first * (T::one() / norm(&first)))
     }
 }
@@ -215,7 +251,7 @@ impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
         self.a.shape.has_shortcuts() || self.b.shape.has_shortcuts()
     }
     fn radius(&self) -> T {
-        self.a.shape.radius() + self.b.shape.radius()
+        self.a.ball + self.b.ball
     }
     fn extent(&self) -> T {
         self.extent
@@ -238,8 +274,8 @@ pub struct Depth<T> {
     pub normal: Vector<T, 3>,
     /// Witness on A, world frame.
     pub point_a: Vector<T, 3>,
-    /// Witness on B, world frame. Where converged, `point_a - point_b` is depth * normal up to the tolerance: the points that
-    /// touch after B is moved, or the nearest points of separated bodies.
+    /// Witness on B, world frame. Where converged, `point_a - point_b` is depth * normal: in length up to the tolerance, sideways up
+    /// to its square root. The points that touch after B is moved, or the nearest points of separated bodies.
     pub point_b: Vector<T, 3>,
     /// Affine dimension of the cores' difference, as far as it was found out.
     pub dimension: usize,
@@ -294,8 +330,8 @@ impl<T: Real> Depth<T> {
             lower: answer.lower,
             upper: answer.upper,
             normal: n,
-            point_a: origin + on_a + n * a.shape.radius(),
-            point_b: origin + on_b - n * b.shape.radius(),
+            point_a: origin + on_a + n * a.ball,
+            point_b: origin + on_b - n * b.ball,
             dimension: answer.dimension,
             iterations: answer.iterations,
             support_calls: answer.support_calls,

@@ -57,6 +57,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     height: T,
     gauge: T,
     ratio: T,
+    /// For a general Q: the origin is certainly outside of A, and `height` is minus a distance.
+    apart: bool,
     /// The lowest key of a facet that was not queued because it was above `ratio` then.
     skipped: T,
     /// Ask the support function without its shortcuts.
@@ -84,6 +86,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             height: T::HUGE,
             gauge: T::one(),
             ratio: T::HUGE,
+            apart: false,
             skipped: T::HUGE,
             exhaustive: false,
             iterations: 0,
@@ -139,13 +142,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             }
             return Ok(());
         }
-        let gauge = self.gauge(direction)?;
-        if gauge <= self.gauge_error {
-            // Q has no extent that way. It bounds nothing, but it may show that the origin is outside.
-            if top < T::zero() && height < self.height {
-                (self.direction, self.height, self.gauge) = (*direction, height, gauge);
+        if self.apart || self.is_outside(height) {
+            // Outside, Q has no say: the distance counts.
+            if !self.apart || height < self.height {
+                (self.direction, self.height, self.ratio, self.apart) = (*direction, height, height, true);
             }
             return Ok(());
+        }
+        let gauge = self.gauge(direction)?;
+        if gauge <= self.gauge_error {
+            return Ok(()); // Q has no extent that way: it bounds nothing.
         }
         let ratio = top / gauge;
         if ratio < self.ratio {
@@ -189,6 +195,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.skipped = self.skipped.at_most(key);
     }
 
+    /// Where the plane that proves the upper bound touches the core of A, were A a ball: direction times support value.
+    pub fn foot(&self) -> Vector<T, N> {
+        self.direction * self.height
+    }
+
     /// Largest norm of a point of the core seen so far.
     pub fn reach(&self) -> T {
         self.reach
@@ -211,7 +222,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let margin = self.margin();
         match self.ball {
             Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
-            None if self.is_outside(self.height) => self.bounds.upper(self.height, margin, T::one(), T::zero()),
+            None if self.apart => self.bounds.upper(self.height, margin, T::one(), T::zero()),
             None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
         }
     }
@@ -319,10 +330,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         };
         let upper = self.upper();
         let met = self.is_met(&Bracket { lower, upper });
-        // An early verdict must survive the final check.
+        // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
         let stop = match (stop, self.options.threshold) {
-            (Stop::Below, Some(t)) if !(upper < t) => Stop::Rounding,
-            (Stop::Above, Some(t)) if !(lower >= t) => Stop::Rounding,
+            (Stop::Failed(code), _) => Stop::Failed(code),
+            (_, Some(t)) if lower >= t => Stop::Above,
+            (_, Some(t)) if upper < t => Stop::Below,
+            (Stop::Above | Stop::Below, _) => Stop::Rounding,
             (stop, _) => stop,
         };
         Answer {

@@ -29,11 +29,8 @@ pub trait Real: RealField + Copy {
     fn to_f64(self) -> f64;
     /// Nearest value of this type to a constant.
     fn of(value: f64) -> Self;
-    /// A small count as a scalar.
-    #[inline]
-    fn count(n: usize) -> Self {
-        Self::of(n as f64)
-    }
+    /// A small count as a scalar, without a detour over `f64`.
+    fn count(n: usize) -> Self;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
     /// `self` if it is larger or `other` is not a number (unlike `RealField::max`, never a call).
@@ -70,6 +67,10 @@ macro_rules! real {
             #[inline(always)]
             fn of(value: f64) -> Self {
                 value as $t
+            }
+            #[inline(always)]
+            fn count(n: usize) -> Self {
+                n as u32 as $t
             }
             #[inline(always)]
             fn finite(self) -> bool {

@@ -131,6 +131,13 @@ impl<T: Real, const N: usize> Simplex<T, N> {
         self.corners.len() <= N && self.corners.push(Corner { vertex, weight: T::zero() }).is_ok()
     }
 
+    /// Moves all points, not the witnesses.
+    pub(crate) fn translate(&mut self, by: &Vector<T, N>) {
+        for corner in &mut self.corners {
+            corner.vertex.point += by;
+        }
+    }
+
     /// Unit vector from the simplex's point, at `distance`, towards the origin.
     ///
     /// The point is known to a roundoff of the vertices' norms, so close to the origin its direction is not. But the

@@ -6,7 +6,7 @@ use crate::distance::{Cloud, Inflated, Nearest, nearest};
 use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Start, Vertex};
 use crate::support::{Failure, Support};
 
@@ -273,8 +273,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         Ok(())
     }
 
-    /// The simplex of the surface that touches the largest d Q: for a ball, the one around the foot of the
-    /// perpendicular on the lowest plane. That facet may be one of several in the plane.
+    /// The simplex of the surface that touches the largest d Q. For a ball, the one around the foot of the perpendicular on
+    /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
+    /// the plane, or belong to another of several minima.
     fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
         let lowest = match facet {
             Some(index) => self.polytope.facet(index),
@@ -285,22 +286,21 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if query.ball.is_none() {
             return simplex;
         }
+        let foot = query.foot();
         let resolution = self.polytope.resolution();
+        simplex.translate(&-foot);
         simplex.minimize(resolution);
-        let foot = facet.normal * facet.offset;
-        let miss = simplex.point() - foot;
-        let near = resolution * T::count(64) + query.options.relative * facet.offset.abs();
+        let miss = simplex.point();
+        let near = resolution * T::count(64) + query.options.relative.at_least(T::zero()).root() * norm(&foot);
         if miss.dot(&miss) > near * near {
             let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
-            if let Some(mut found) = cloud.nearest(&facet.normal)
+            if let Some(found) = cloud.nearest(&facet.normal)
                 && found.distance * found.distance < miss.dot(&miss)
             {
-                for corner in &mut found.simplex.corners {
-                    corner.vertex.point += foot;
-                }
-                return found.simplex;
+                simplex = found.simplex;
             }
         }
+        simplex.translate(&foot);
         simplex
     }
 

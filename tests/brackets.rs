@@ -62,7 +62,13 @@ fn problems<T: Real, const N: usize>(seed: u64) -> Vec<Known<T, N>> {
     let q = EllipsoidGauge::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
     add("ellipsoid in ellipsoid", Box::new(ellipsoid), Box::new(q), least::<N>(|i| h[i] / g[i]), few);
     let corner = (0..N).map(|i| (g[i] / h[i]).powi(2)).sum::<f64>().sqrt();
-    add("box in ellipsoid", Box::new(ellipsoid), Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap()), 1.0 / corner, few);
+    add(
+        "box in ellipsoid",
+        Box::new(ellipsoid),
+        Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap()),
+        1.0 / corner,
+        few,
+    );
     // Sheared: face normals are the rows of the inverse.
     let r = dice.rotation::<N>();
     let m = SMatrix::<f64, N, N>::from_fn(|i, j| exact::<T>(r[i][j] * g[j] + 0.1 * dice.signed()));
@@ -215,9 +221,17 @@ fn tolerances<T: Real, const N: usize>() {
     let mut memory = Memory::new::<T, N>(size.0, size.1);
     let mut dice = Dice::new(35);
     for k in problems::<T, N>(35) {
-        for (absolute, relative) in
-            [(0.0, 0.0), (0.0, 1e-15), (1e-30, 0.0), (0.0, 0.3), (0.0, 1.0), (0.0, 1e6), (1e30, 0.0), (0.1, 0.0), (1e-3, 1e-3)]
-        {
+        for (absolute, relative) in [
+            (0.0, 0.0),
+            (0.0, 1e-15),
+            (1e-30, 0.0),
+            (0.0, 0.3),
+            (0.0, 1.0),
+            (0.0, 1e6),
+            (1e30, 0.0),
+            (0.1, 0.0),
+            (1e-3, 1e-3),
+        ] {
             for guess in 0..6 {
                 let guess = match guess {
                     0 => None,
@@ -248,7 +262,12 @@ fn reuse<T: Real, const N: usize>() {
         holds(&k, &s, &options, size);
         let mut fresh = Memory::new::<T, N>(size.0, size.1);
         let t = Seen::from(&fresh.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
-        assert_eq!((s.outcome, s.lower, s.upper, s.iterations), (t.outcome, t.lower, t.upper, t.iterations), "{}", k.name);
+        assert_eq!(
+            (s.outcome, s.lower, s.upper, s.iterations),
+            (t.outcome, t.lower, t.upper, t.iterations),
+            "{}",
+            k.name
+        );
     }
 }
 every_type_and_dimension!(used_memory_answers_as_fresh_memory, reuse);
@@ -265,7 +284,8 @@ fn pairs<T: Real>() {
         let far = exact::<T>(if round % 3 == 0 { 1000.0 } else { 0.0 });
         // B stands at far + by, rounded; the oracle takes what the solver gets.
         let (at_a, at_b) = ([far, 0.0, 0.0], [exact::<T>(far + by[0]), by[1], by[2]]);
-        let place = |p: &[[f64; 3]], t: [f64; 3]| -> Vec<_> { p.iter().map(|p| common::dd::add(&v3(*p), &v3(t))).collect() };
+        let place =
+            |p: &[[f64; 3]], t: [f64; 3]| -> Vec<_> { p.iter().map(|p| common::dd::add(&v3(*p), &v3(t))).collect() };
         let d = signed_depth(&ExactHull::new(&place(&pa, at_a)), &ExactHull::new(&place(&pb, at_b))).depth.hi;
         let typed = |p: &[[f64; 3]]| -> Vec<[T; 3]> { p.iter().map(|p| p.map(T::of)).collect() };
         let (ta, tb) = (typed(&pa), typed(&pb));

@@ -235,7 +235,8 @@ fn bodies<T: Real>() {
                 let r: Depth<T> =
                     memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
                 let seen = Seen::from(&r);
-                let mut complain = |what: String| complaints.push(format!("{one} {other} {round}, u = {u:.0e}: {what}; {seen:?}"));
+                let mut complain =
+                    |what: String| complaints.push(format!("{one} {other} {round}, u = {u:.0e}: {what}; {seen:?}"));
                 if let Some(text) = broken_promise(&seen, &options, 256, 512) {
                     complain(text);
                 }
@@ -249,7 +250,8 @@ fn bodies<T: Real>() {
                     complain(format!("a direction proves depth <= {:e}", found.hi));
                 }
                 // Witnesses: on their bodies, and depth * normal apart.
-                let narrow = seen.upper - seen.lower <= 2.0 * (options.relative.to_f64() * seen.upper.abs()).max(500.0 * u);
+                let narrow =
+                    seen.upper - seen.lower <= 2.0 * (options.relative.to_f64() * seen.upper.abs()).max(500.0 * u);
                 if !narrow {
                     // Minima that form a circle take many facets.
                     if seen.outcome != Outcome::Capacity {
@@ -257,7 +259,10 @@ fn bodies<T: Real>() {
                     }
                     continue;
                 }
-                let (wa, wb) = ([r.point_a.x, r.point_a.y, r.point_a.z].map(Real::to_f64), [r.point_b.x, r.point_b.y, r.point_b.z].map(Real::to_f64));
+                let (wa, wb) = (
+                    [r.point_a.x, r.point_a.y, r.point_a.z].map(Real::to_f64),
+                    [r.point_b.x, r.point_b.y, r.point_b.z].map(Real::to_f64),
+                );
                 // A direction whose height is off by a share t may be off by an angle of the root of 2 t, and the point that
                 // goes with it by that times the size of the cores' distance.
                 let radii = (sa.radius() + sb.radius()).to_f64();
@@ -275,7 +280,10 @@ fn bodies<T: Real>() {
                         complain(format!("the witness on {name} is {:e} inside of it", -off));
                     }
                 }
-                let miss = (0..3).map(|i| (wa[i] - wb[i] - 0.5 * (seen.lower + seen.upper) * n[i]).powi(2)).sum::<f64>().sqrt();
+                let miss = (0..3)
+                    .map(|i| (wa[i] - wb[i] - 0.5 * (seen.lower + seen.upper) * n[i]).powi(2))
+                    .sum::<f64>()
+                    .sqrt();
                 if miss > slack {
                     complain(format!("point_a - point_b is {miss:e} off depth * normal, {slack:e} allowed"));
                 }
@@ -313,7 +321,13 @@ fn skewed<T: Real>() {
                 let mut b = random_body::<T>(other, &mut dice, direction.map(|x| x * by));
                 for body in [&mut a, &mut b] {
                     for k in 0..9 {
-                        let base = if !coaxial { body.rotation[k] } else if k % 4 == 0 { 1.0 } else { 0.0 };
+                        let base = if !coaxial {
+                            body.rotation[k]
+                        } else if k % 4 == 0 {
+                            1.0
+                        } else {
+                            0.0
+                        };
                         // Coaxial ones keep their axis.
                         let axis = coaxial && (k % 3 == 2 || k / 3 == 2);
                         body.rotation[k] = exact::<T>(base + if axis { 0.0 } else { off * dice.signed() });
@@ -327,7 +341,9 @@ fn skewed<T: Real>() {
                     memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
                 let seen = Seen::from(&r);
                 let mut complain = |what: String| {
-                    complaints.push(format!("{one} {other} {round}, coaxial {coaxial}, off by {off:.1e}, u = {u:.0e}: {what}; {seen:?}"));
+                    complaints.push(format!(
+                        "{one} {other} {round}, coaxial {coaxial}, off by {off:.1e}, u = {u:.0e}: {what}; {seen:?}"
+                    ));
                 };
                 if let Some(text) = broken_promise(&seen, &options, 256, 512) {
                     complain(text);

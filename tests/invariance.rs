@@ -10,9 +10,7 @@ use common::dice::Dice;
 use common::memory::{Memory, Seen};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
-use qdist::support::{
-    BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Margin, Points, Rigid, Sphere, Sum, Support,
-};
+use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Body, Depth, Options, Outcome, Real, Vector};
 
 /// A shape by its numbers, so that it can be built in either type and at any scale.
@@ -55,7 +53,8 @@ impl Placed {
             _ => Kind::Hull((0..4 + dice.below(20)).map(|_| dice.direction::<3>().map(single)).collect()),
         };
         let margin = if dice.chance(0.3) { single(dice.range(0.0, 0.3)) } else { 0.0 };
-        let rotation = if dice.chance(0.3) { [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] } else { dice.rotation::<3>() };
+        let rotation =
+            if dice.chance(0.3) { [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] } else { dice.rotation::<3>() };
         Placed { kind, margin, rotation: rotation.map(|r| r.map(single)), translation: [0.0; 3] }
     }
 
@@ -125,7 +124,8 @@ fn pairs(seed: u64, count: usize) -> Vec<(Placed, Placed)> {
             let far = if dice.chance(0.3) { 100.0 } else { 0.0 };
             let (direction, by) = (dice.direction::<3>(), dice.range(0.0, 3.0));
             let a = Placed::random(&mut dice).moved([far, 0.0, -far]);
-            let b = Placed::random(&mut dice).moved([far + by * direction[0], by * direction[1], by * direction[2] - far]);
+            let b =
+                Placed::random(&mut dice).moved([far + by * direction[0], by * direction[1], by * direction[2] - far]);
             (a, b)
         })
         .collect()
@@ -190,8 +190,11 @@ fn general_scales<T: Real, const N: usize>(powers: &[i32]) {
         let which = dice.below(2);
         let run = |s: f64, q: f64, gauge: usize| {
             let v = |x: &[f64; N], s: f64| Vector::<T, N>::from(x.map(|x| T::of(x * s)));
-            let inner: Box<dyn Support<T, N>> =
-                if which == 0 { Box::new(BoxShape::new(v(&h, s)).unwrap()) } else { Box::new(Ellipsoid::new(v(&h, s)).unwrap()) };
+            let inner: Box<dyn Support<T, N>> = if which == 0 {
+                Box::new(BoxShape::new(v(&h, s)).unwrap())
+            } else {
+                Box::new(Ellipsoid::new(v(&h, s)).unwrap())
+            };
             let set = Rigid::new(&*inner, SMatrix::identity(), v(&t, s)).unwrap();
             let gauge: Box<dyn Gauge<T, N>> = match gauge {
                 0 => Box::new(Ball::new(T::of(q)).unwrap()),
@@ -210,9 +213,17 @@ fn general_scales<T: Real, const N: usize>(powers: &[i32]) {
                 let s = 2f64.powi(k);
                 assert_eq!(run(s, s, gauge), one, "both, N = {N}, gauge {gauge}, 2^{k}");
                 let set = run(s, 1.0, gauge);
-                assert_eq!((set.0 / T::of(s), set.1 / T::of(s), set.2), (one.0, one.1, one.2), "A, N = {N}, gauge {gauge}, 2^{k}");
+                assert_eq!(
+                    (set.0 / T::of(s), set.1 / T::of(s), set.2),
+                    (one.0, one.1, one.2),
+                    "A, N = {N}, gauge {gauge}, 2^{k}"
+                );
                 let q = run(1.0, s, gauge);
-                assert_eq!((q.0 * T::of(s), q.1 * T::of(s), q.2), (one.0, one.1, one.2), "Q, N = {N}, gauge {gauge}, 2^{k}");
+                assert_eq!(
+                    (q.0 * T::of(s), q.1 * T::of(s), q.2),
+                    (one.0, one.1, one.2),
+                    "Q, N = {N}, gauge {gauge}, 2^{k}"
+                );
             }
         }
     }
@@ -257,7 +268,8 @@ fn exact_turns_of_the_world_change_nothing() {
 fn exact_shifts_of_the_world_change_no_bit() {
     let mut dice = Dice::new(45);
     for i in 0..100 {
-        let sixteenths = |dice: &mut Dice| -> [f64; 3] { std::array::from_fn(|_| (dice.below(49) as f64 - 24.0) / 16.0) };
+        let sixteenths =
+            |dice: &mut Dice| -> [f64; 3] { std::array::from_fn(|_| (dice.below(49) as f64 - 24.0) / 16.0) };
         let (ta, tb) = (sixteenths(&mut dice), sixteenths(&mut dice));
         let (a, b) = (Placed::random(&mut dice), Placed::random(&mut dice));
         let one = depth::<f64>(&a.clone().moved(ta), &b.clone().moved(tb));
@@ -319,12 +331,20 @@ fn margins<T: Real>() {
         let (lower, upper) = bracket(&one);
         // The sum of radii is rounded once in the scalar type.
         let blur = 4.0 * T::ROUNDOFF.to_f64() * (grown.margin + 3.0);
-        overlap(&format!("pair {i} + {added}: {a:?} {b:?}\n{one:?}\n{two:?}"), (lower + added - blur, upper + added + blur), bracket(&two));
+        overlap(
+            &format!("pair {i} + {added}: {a:?} {b:?}\n{one:?}\n{two:?}"),
+            (lower + added - blur, upper + added + blur),
+            bracket(&two),
+        );
         let mut other = b.clone();
         other.margin = T::of(single(b.margin + r)).to_f64();
         let added = other.margin - b.margin;
         let two = depth::<T>(a, &other);
-        overlap(&format!("pair {i}, B + {added}: {a:?} {b:?}"), (lower + added - blur, upper + added + blur), bracket(&two));
+        overlap(
+            &format!("pair {i}, B + {added}: {a:?} {b:?}"),
+            (lower + added - blur, upper + added + blur),
+            bracket(&two),
+        );
     }
 }
 
@@ -338,8 +358,7 @@ fn a_margin_adds_its_radius() {
 fn sphere_sums<T: Real, const N: usize>() {
     let mut dice = Dice::new(50);
     for _ in 0..20 {
-        let points: Vec<[T; N]> =
-            (0..N + 1 + dice.below(8)).map(|_| dice.direction::<N>().map(|x| T::of(x))).collect();
+        let points: Vec<[T; N]> = (0..N + 1 + dice.below(8)).map(|_| dice.direction::<N>().map(|x| T::of(x))).collect();
         let set = Points::new(&points).unwrap();
         let r = T::of(single(dice.range(0.01, 1.0)));
         let run = |set: &dyn Support<T, N>| {
@@ -374,12 +393,17 @@ fn inclusions<T: Real>() {
         let all: Vec<[f64; 3]> = (0..12).map(|_| dice.direction::<3>().map(single)).collect();
         let (direction, by) = (dice.direction::<3>(), dice.range(0.0, 2.0));
         let b = Placed::random(&mut dice).moved(direction.map(|x| x * by));
-        let hull = |n: usize| Placed { kind: Kind::Hull(all[..n].to_vec()), margin: 0.0, ..Placed::random(&mut Dice::new(i)) };
+        let hull =
+            |n: usize| Placed { kind: Kind::Hull(all[..n].to_vec()), margin: 0.0, ..Placed::random(&mut Dice::new(i)) };
         let mut before: Option<Depth<T>> = None;
         for n in 1..=12 {
             let now = depth::<T>(&hull(n), &b);
             if let Some(before) = before {
-                assert!(before.lower <= now.upper, "{i}: {n} points have less depth than {}: {before:?} {now:?}", n - 1);
+                assert!(
+                    before.lower <= now.upper,
+                    "{i}: {n} points have less depth than {}: {before:?} {now:?}",
+                    n - 1
+                );
             }
             before = Some(now);
         }

@@ -65,6 +65,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn radius(&self) -> T {
         (**self).radius()
     }
+    fn rolling_radius(&self) -> T {
+        (**self).rolling_radius()
+    }
     fn extent(&self) -> T {
         (**self).extent()
     }
@@ -81,8 +84,8 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
 
 /// A set moved by x -> R x + t. The ball term stays: `R core + t + radius * ball`.
 ///
-/// That is the set for the matrix *as given*: a matrix that is off orthonormal by rounding moves the core by as much, and
-/// the promise holds for the moved core. Cost: 2 N^2 products.
+/// That is the set for the matrix *as given*: one that is off orthonormal moves the core by as much. (Where it is off by
+/// more than rounding, a [`rolling_radius`](Support::rolling_radius) goes into the support points instead.) Cost: 2 N^2 products.
 ///
 /// `error`: let s >= |R| (1 for a rotation). R^T u has rounding error at most `N sqrt(N) s u |u|`, which costs twice that
 /// times E in the farthest point. R x + t has error `(N sqrt(N) s + 2) u E + 2 u |t|`. Together, with
@@ -106,6 +109,8 @@ pub struct Rigid<S, T, const N: usize> {
     stretch: T,
     /// At least |translation|.
     shift: T,
+    /// Is the matrix off orthonormal by more than rounding?
+    skewed: bool,
 }
 
 impl<S, T: Real, const N: usize> Rigid<S, T, N> {
@@ -129,23 +134,46 @@ impl<S, T: Real, const N: usize> Rigid<S, T, N> {
         // Written so that NaN (from entries whose squares overflow) is refused.
         if off <= T::of(1e-3) {
             let stretch = T::one() + off + T::count(N * N + 8) * T::ROUNDOFF;
-            Ok(Self { shape, rotation, translation, stretch, shift: length(&translation) })
+            let skewed = off > T::count(16 * N) * T::ROUNDOFF;
+            Ok(Self { shape, rotation, translation, stretch, shift: length(&translation), skewed })
         } else {
             Err(ShapeError::NotOrthonormal)
         }
     }
 }
 
+impl<S, T: Real, const N: usize> Rigid<S, T, N> {
+    /// Radius of the ball that goes into the support points.
+    #[inline]
+    fn inflation(&self) -> T
+    where
+        S: Support<T, N>,
+    {
+        if self.skewed { self.shape.rolling_radius() } else { T::zero() }
+    }
+
+    #[inline]
+    fn moved(&self, mut x: Vector<T, N>, local: &Vector<T, N>) -> Vector<T, N>
+    where
+        S: Support<T, N>,
+    {
+        if self.skewed {
+            x += unit(local) * self.inflation();
+        }
+        mapped(&self.rotation, &x, &self.translation)
+    }
+}
+
 impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N> {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        let x = self.shape.support(&transposed(&self.rotation, u))?;
-        Ok(mapped(&self.rotation, &x, &self.translation))
+        let local = transposed(&self.rotation, u);
+        Ok(self.moved(self.shape.support(&local)?, &local))
     }
     #[inline]
     fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        let x = self.shape.exhaustive(&transposed(&self.rotation, u))?;
-        Ok(mapped(&self.rotation, &x, &self.translation))
+        let local = transposed(&self.rotation, u);
+        Ok(self.moved(self.shape.exhaustive(&local)?, &local))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -153,16 +181,19 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
     }
     #[inline]
     fn radius(&self) -> T {
-        self.shape.radius()
+        self.shape.radius() - self.inflation()
+    }
+    fn rolling_radius(&self) -> T {
+        self.shape.rolling_radius() - self.inflation()
     }
     fn extent(&self) -> T {
         let inner = self.shape.extent();
-        if_known(&[inner], self.stretch * inner + self.shift)
+        if_known(&[inner], self.stretch * (inner + self.inflation()) + self.shift)
     }
     fn error(&self) -> T {
         let inner = self.shape.extent();
-        let reach = if inner > T::zero() { inner } else { self.shift } + self.shift;
-        let n = T::count(4 * N) * T::count(N).root() + T::of(2.0);
+        let reach = if inner > T::zero() { inner } else { self.shift } + self.shift + self.inflation();
+        let n = T::count(4 * N) * T::count(N).root() + T::count(N + 10);
         self.stretch * above(self.shape.error() + n * T::ROUNDOFF * reach, N)
     }
 }
@@ -297,6 +328,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     fn radius(&self) -> T {
         self.a.radius() + self.b.radius()
     }
+    fn rolling_radius(&self) -> T {
+        self.a.rolling_radius() + self.b.rolling_radius()
+    }
     fn extent(&self) -> T {
         let (a, b) = (self.a.extent(), self.b.extent());
         if_known(&[a, b], a + b)
@@ -363,6 +397,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     fn radius(&self) -> T {
         self.a.radius() + self.b.radius()
     }
+    fn rolling_radius(&self) -> T {
+        self.a.rolling_radius() + self.b.rolling_radius()
+    }
     fn extent(&self) -> T {
         let (a, b) = (self.a.extent(), self.b.extent());
         if_known(&[a, b], a + b)
@@ -415,6 +452,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
     #[inline]
     fn radius(&self) -> T {
         self.shape.radius() * self.factor
+    }
+    fn rolling_radius(&self) -> T {
+        self.shape.rolling_radius() * self.factor
     }
     fn extent(&self) -> T {
         above(self.shape.extent() * self.factor, 0)
@@ -469,6 +509,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     #[inline]
     fn radius(&self) -> T {
         self.shape.radius() + self.margin
+    }
+    fn rolling_radius(&self) -> T {
+        self.shape.rolling_radius()
     }
     fn extent(&self) -> T {
         self.shape.extent()

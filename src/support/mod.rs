@@ -84,6 +84,12 @@ pub trait Support<T: Real, const N: usize> {
         T::zero()
     }
 
+    /// The part of [`radius`](Support::radius) that is not a ball by definition, as that of a sphere, capsule or margin is, but was split off a
+    /// rounded body ([`Ellipsoid`]). A matrix that is a rotation only roughly does not leave it a ball.
+    fn rolling_radius(&self) -> T {
+        T::zero()
+    }
+
     /// An upper bound of |x| over the core, or 0 when it is not known. Rounding margins scale with it; where
     /// it is not known the solver takes the largest norm it has seen.
     fn extent(&self) -> T {

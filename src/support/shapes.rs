@@ -321,6 +321,9 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
             Ok(self.out_of_range(u))
         }
     }
+    fn rolling_radius(&self) -> T {
+        self.ball
+    }
     fn radius(&self) -> T {
         self.ball
     }

@@ -111,8 +111,10 @@ struct Least<'a> {
 }
 
 impl Least<'_> {
-    /// Tries u and -u. `blur` bounds the error of u's direction in `f64`; a look in `f64` drops what cannot matter.
-    fn try_both(&mut self, u: impl Fn() -> V3, rough: &[f64; 3], blur: f64) {
+    /// Tries u and -u, u being a cross product of vectors whose lengths multiply to `scale_of_u`, and `rough` its value in `f64`;
+    /// a look in `f64` drops what cannot matter.
+    fn try_both(&mut self, u: impl Fn() -> V3, scale_of_u: f64, rough: &[f64; 3]) {
+        let blur = 1e-14 * scale_of_u / dot64(rough, rough).sqrt();
         let length = dot64(rough, rough).sqrt();
         if blur < 1e-3 {
             let range = |hull: &ExactHull| {
@@ -131,7 +133,8 @@ impl Least<'_> {
         }
         let u = u();
         let length = norm(&u);
-        if !(length.hi > 0.0) {
+        // Parallel edges have no cross product, but rounding: that would be a direction made of noise.
+        if !(length.hi > 1e-24 * scale_of_u) {
             return;
         }
         for sign in [1.0, -1.0] {
@@ -161,8 +164,8 @@ pub fn signed_depth(a: &ExactHull, b: &ExactHull) -> Exact {
         for t in &hull.triangles {
             let (e, f) = (sub64(&hull.near[t[1]], &hull.near[t[0]]), sub64(&hull.near[t[2]], &hull.near[t[0]]));
             let rough = cross64(&e, &f);
-            let blur = 1e-14 * (dot64(&e, &e) * dot64(&f, &f) / dot64(&rough, &rough)).sqrt();
-            least.try_both(|| hull.face(t), &rough, blur);
+            let lengths = (dot64(&e, &e) * dot64(&f, &f)).sqrt();
+            least.try_both(|| hull.face(t), lengths, &rough);
         }
     }
     for ea in &a.edges {
@@ -170,12 +173,14 @@ pub fn signed_depth(a: &ExactHull, b: &ExactHull) -> Exact {
         for eb in &b.edges {
             let f = sub64(&b.near[eb[1]], &b.near[eb[0]]);
             let rough = cross64(&e, &f);
-            let blur = 1e-14 * (dot64(&e, &e) * dot64(&f, &f) / dot64(&rough, &rough)).sqrt();
-            least.try_both(|| cross(&a.edge(ea), &b.edge(eb)), &rough, blur);
+            let lengths = (dot64(&e, &e) * dot64(&f, &f)).sqrt();
+            least.try_both(|| cross(&a.edge(ea), &b.edge(eb)), lengths, &rough);
         }
     }
     let found = least.depth.hi < f64::MAX;
-    if found && least.depth > Dd::ZERO {
+    let size = a.spread + b.spread + dot64(&between, &between).sqrt();
+    // In a flat M with the origin in its plane, rounding may leave less than this.
+    if found && least.depth.hi > 1e-24 * size {
         return Exact { depth: least.depth, normal: least.normal.map(Dd::to_f64) };
     }
     Exact { depth: -distance(a, b), normal: [f64::NAN; 3] }
