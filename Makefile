@@ -4,6 +4,7 @@
 #   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
 #   make header         src/capi/f32 and include/qdist.h           make freestanding  a program without any libc
 #   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
+#   make stack          stack bytes of a query              
 #   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
 #
 # Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
@@ -24,7 +25,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
       else echo "please install: $(1)" >&2; exit 1; fi
 
-.PHONY: all lib lib-std header header-check demo test test-c freestanding purity compare compiler clean
+.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare compiler clean
 all: lib
 
 compiler:
@@ -88,6 +89,11 @@ freestanding: lib
 purity: compiler
 	@scripts/purity.sh
 
+stack: lib
+	@$(CC) -std=gnu99 -O2 -Wall -Wextra -Iinclude ffi-tests/stack.c $(lib) -o $(out)/stack
+	@$(out)/stack
+
+# CHECK=--check makes a wrong or missing bracket an error.
 CASES ?= $(wildcard ../shared/data/convex/*.txt)
 OUT ?= out/compare
 compare: lib
@@ -100,7 +106,7 @@ compare: lib
 	@mkdir -p $(OUT)
 	@echo "comparing; results go to $(OUT)"
 	@$(out)/compare $(OUT) $(CASES)
-	@python3 ffi-tests/compare_table.py $(OUT)/compare.csv $(CASES)
+	@python3 ffi-tests/compare_table.py $(CHECK) $(OUT)/compare.csv $(CASES)
 peer_includes = -isystem /usr/include/eigen3
 
 test:

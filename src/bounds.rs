@@ -29,7 +29,18 @@
 //! another Q, the factor (1 - e / ρ) with ρ the inradius min e_F of the surface: h_A(u) >= h_V(u) - e |u|
 //! and |u| <= h_V(u) / ρ.
 //!
-//! When the origin is not certainly inside, the bound is minus the norm of the point of conv V nearest to it.
+//! That the surface winds around the origin is not taken for granted: slivers can fold over. Let c be the centroid of the first
+//! simplex, and let every facet F ever made satisfy n.c < e_F by more than rounding. Then
+//!
+//! 1. c keeps a distance from all facets of the first simplex, so it lies inside, and the surface winds around it once;
+//! 2. a point p is inserted over facets F with n.p > e_F, so conv(F, p) lies above e_F and c is not in it: replacing
+//!    F by the cone of p does not change the winding around c;
+//! 3. at the end all e_F > 0, so the segment from c to the origin lies beneath every facet and crosses none:
+//!    the surface winds around the origin once as well.
+//!
+//! A set so thin that 1. or 2. cannot be shown in the arithmetic at hand gets the weaker bound:
+//!
+//! when the origin is not certainly inside, it is minus the norm of the point of conv V nearest to it.
 //!
 //! A ball term r of A is added to both sides (Euclidean Q only; there h(core + rB) = h(core) + r |n|).
 

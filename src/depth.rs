@@ -165,8 +165,8 @@ struct Pair<'p, 'a, T: Real> {
 impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
     fn new(a: &'p Body<'a, T>, b: &'p Body<'a, T>) -> Result<Self, Failure> {
         let (on_a, on_b) = (a.anchor()?, b.anchor()?);
-        let offset = if on_a.center.is_none() && on_b.center.is_none() {
-            a.translation - b.translation
+        let (offset, left) = if on_a.center.is_none() && on_b.center.is_none() {
+            (a.translation - b.translation, T::zero())
         } else {
             anchor_offset(a, &on_a, b, &on_b)
         };
@@ -176,8 +176,8 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         // at most 5.2 u, which costs that times the diameter 2 E; the anchor's subtraction u E; the product with the rotation 5.2 u E.
         // The two additions cost u times the sizes of their sums, the rounding of `offset` u of its own (2 u when
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
-        let error =
-            (on_a.error + on_b.error + (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF) * T::of(1.01);
+        let rounding = (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF;
+        let error = (on_a.error + on_b.error + rounding) * T::of(1.01) + left;
         Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error })
     }
 
@@ -188,10 +188,13 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
     }
 }
 
-/// (t_a + R_a c_a) - (t_b + R_b c_b), computed as in twice the precision: the terms may be large and cancel.
+/// (t_a + R_a c_a) - (t_b + R_b c_b), computed as in twice the precision: the terms may be large and cancel. And a bound
+/// of what that leaves beside the rounding of the result: u^2 times the terms, eight in each of three coordinates.
 #[cold]
-fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on_b: &Anchor<T>) -> Vector<T, 3> {
+fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on_b: &Anchor<T>) -> (Vector<T, 3>, T) {
     let mut offset = Vector::<T, 3>::zeros();
+    let far = |anchor: &Anchor<T>| anchor.center.map_or(T::zero(), |center| norm(&center));
+    let terms = norm(&a.translation) + norm(&b.translation) + far(on_a) + far(on_b);
     for i in 0..3 {
         let mut sum = Accumulator::new(a.translation[i]);
         sum.add(-b.translation[i]);
@@ -204,7 +207,7 @@ fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on
         }
         offset[i] = sum.value();
     }
-    offset
+    (offset, terms * T::count(256) * T::ROUNDOFF * T::ROUNDOFF)
 }
 
 /// Lengths that the common axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.

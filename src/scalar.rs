@@ -16,6 +16,8 @@ pub trait Real: RealField + Copy {
     const ROUNDOFF: Self;
     /// The largest finite number: stands for "unbounded" where no arithmetic follows.
     const HUGE: Self;
+    /// A sum of squares above this has lost nothing that counts to underflow: the smallest normal number / u^2.
+    const SAFE_SQUARE: Self;
     /// The default relative tolerance of a query: 1e-6 in `f64`, 1e-4 in `f32`.
     const RELATIVE_TOLERANCE: Self;
 
@@ -50,6 +52,7 @@ macro_rules! real {
         impl Real for $t {
             const ROUNDOFF: Self = $t::EPSILON / 2.0;
             const HUGE: Self = $t::MAX;
+            const SAFE_SQUARE: Self = $t::MIN_POSITIVE / (Self::ROUNDOFF * Self::ROUNDOFF);
             const RELATIVE_TOLERANCE: Self = $tolerance;
             const SPLIT: Self = $split;
 
@@ -83,10 +86,22 @@ macro_rules! real {
 real!(f32, libm::sqrtf, 1e-4, 4097.0);
 real!(f64, libm::sqrt, 1e-6, 134_217_729.0);
 
-/// Euclidean norm.
+/// Euclidean norm, also where squares underflow.
 #[inline(always)]
 pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
-    v.dot(v).root()
+    let squared = v.dot(v);
+    if squared > T::SAFE_SQUARE { squared.root() } else { small_norm(v) }
+}
+
+#[cold]
+#[inline(never)]
+fn small_norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+    let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+    if !(largest > T::zero()) {
+        return T::zero();
+    }
+    let scaled = v.map(|x| x / largest);
+    largest * scaled.dot(&scaled).root()
 }
 
 /// Are all coordinates finite?

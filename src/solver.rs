@@ -43,6 +43,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, options: &Options<T, N>) -> Answer<T, N> {
         self.polytope.reset();
         let radius = a.radius();
+        if [radius, a.extent(), a.error(), q.error()].iter().any(|x| !(x.finite() && *x >= T::zero())) {
+            let mut query = Query::new(a, q, T::zero(), *options);
+            return self.give_up(&mut query, Failure(crate::NOT_FINITE));
+        }
         if q.ball_radius().is_none() && radius > T::zero() {
             let inflated = Inflated(a);
             return self.run(Query::new(&inflated, q, T::zero(), *options));
@@ -134,6 +138,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
     /// inside.
     fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
+        if !self.polytope.is_sound() {
+            return None;
+        }
         match query.ball {
             Some(radius) => query.lower_from_offset(key * radius - query.bounds.radius),
             None => query.lower_from_facets(self.polytope.facets().map(|f| (f.offset, f.key))),
@@ -235,6 +242,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let first = if apart { query.direction } else { query.first_direction() };
             match self.approach(query, &first) {
                 Ok((end, near)) => {
+                    // A walk that was cut short may know less than the vertices stored before it.
+                    let stored = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
+                    let near = match stored.nearest(&first) {
+                        Some(found) if end == Stop::Iterations && found.distance < near.distance => found,
+                        _ => near,
+                    };
                     let stop = if stop == Stop::Flat && near.inside { stop } else { end };
                     let lower = query.lower_from_distance(near.distance);
                     return query.answer(stop, lower, near.simplex, &self.polytope);

@@ -311,7 +311,7 @@ fn skewed<T: Real>() {
     let mut complaints = Vec::new();
     for round in 0..20 {
         // From rounding to all that is allowed.
-        let off = dice.decade(u.log10() - 0.5, 4e-5f64.log10());
+        let off = dice.decade(u.log10() - 0.5, 2e-5f64.log10());
         for one in KINDS {
             for other in KINDS {
                 let coaxial = round % 2 == 0;

@@ -13,7 +13,7 @@
 //! *through the old patch* ([`insert`]), never by comparing coordinates. So whatever rounding does to the
 //! visibility test, every ridge keeps exactly two facets and the surface stays a closed cycle around the
 //! same points. A wrong decision can cost tightness, never topology, and the lower bound (module `bounds`) needs only
-//! the latter.
+//! the latter, and that no facet turned inside out on the way, which [`Polytope::is_sound`] tells.
 
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
@@ -83,8 +83,11 @@ pub struct Polytope<'a, T, const N: usize> {
     peak: usize,
     /// Head of the list of facets that the last insertion made.
     fresh: Index,
-    /// A point inside, to orient a normal that lost its direction.
+    /// The centroid of the first simplex.
     center: Vector<T, N>,
+    /// Every facet ever made had the centre certainly beneath it: the surface winds around the centre once (module
+    /// `bounds`).
+    sound: bool,
     /// Largest |v|^2 over the vertices.
     reach_squared: T,
     reach: T,
@@ -103,6 +106,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             peak: 0,
             fresh: NONE,
             center: Vector::zeros(),
+            sound: true,
             reach_squared: T::zero(),
             reach: T::zero(),
         }
@@ -117,6 +121,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.live = 0;
         self.peak = 0;
         self.fresh = NONE;
+        self.sound = true;
         self.reach_squared = T::zero();
         self.reach = T::zero();
     }
@@ -134,6 +139,11 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     /// unit n and |v| <= reach, with room for the error of n itself.
     pub fn resolution(&self) -> T {
         T::count(8 * N) * T::ROUNDOFF * self.reach
+    }
+
+    /// Does the surface certainly wind around every point that all facets are certainly above?
+    pub fn is_sound(&self) -> bool {
+        self.sound
     }
 
     pub fn facet(&self, facet: Index) -> Option<&Facet<T, N>> {

@@ -16,20 +16,42 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Where F and G are almost opposite (a thin polytope), the combination cancels. That shows as a spread of
     /// n.v over the facet's vertices above the resolution; then the normal is projected once more onto the orthogonal
     /// complement of the facet's edges.
-    pub(super) fn plane(&self, vertices: &[Index; N], normal: Vector<T, N>) -> Option<(Vector<T, N>, T)> {
+    pub(super) fn plane(&mut self, vertices: &[Index; N], normal: Vector<T, N>) -> Option<(Vector<T, N>, T)> {
         let normal = normal * (T::one() / norm(&normal));
         let (lowest, highest) = self.heights(vertices, &normal)?;
-        if highest - lowest <= self.resolution() {
-            return Some((normal, lowest));
-        }
-        let repaired = self.repair(vertices, &normal)?;
-        let (low, high) = self.heights(vertices, &repaired)?;
-        // Not a number compares false: the first normal is kept, unless it is none itself.
-        if high - low < highest - lowest || !(lowest <= highest) {
-            Some((repaired, low))
+        let (normal, offset) = if highest - lowest <= self.resolution() {
+            (normal, lowest)
         } else {
-            Some((normal, lowest))
+            let repaired = self.repair(vertices, &normal, N - 1)?;
+            let (low, high) = self.heights(vertices, &repaired)?;
+            // Not a number compares false: the first normal is kept, unless it is none itself.
+            let better = high - low < highest - lowest || !(lowest <= highest);
+            if better { (repaired, low) } else { (normal, lowest) }
+        };
+        if self.is_beneath(&normal, offset) { Some((normal, offset)) } else { self.turn_away(vertices, normal, offset) }
+    }
+
+    /// Is the centre certainly beneath the facet with this plane? The rounding of two products and of the normal's length.
+    fn is_beneath(&self, normal: &Vector<T, N>, offset: T) -> bool {
+        offset - normal.dot(&self.center) > self.reach * (T::count(2 * N + 4) * T::ROUNDOFF)
+    }
+
+    /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that
+    /// points away from the centre may do. The lower bound holds for any.
+    #[cold]
+    fn turn_away(&mut self, vertices: &[Index; N], normal: Vector<T, N>, offset: T) -> Option<(Vector<T, N>, T)> {
+        let away = self.vertices.get(usize::from(*vertices.first()?))?.point - self.center;
+        let away = away * (T::one() / norm(&away));
+        for edges in (0..N).rev() {
+            if let Some(turned) = self.repair(vertices, &away, edges) {
+                let (low, _) = self.heights(vertices, &turned)?;
+                if self.is_beneath(&turned, low) {
+                    return Some((turned, low));
+                }
+            }
         }
+        self.sound = false;
+        Some((normal, offset))
     }
 
     /// min and max of n.v over the vertices.
@@ -45,10 +67,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         range
     }
 
-    /// A unit vector orthogonal to the facet's edges, on the side of `hint`. Gram-Schmidt with pivoting; where
+    /// A unit vector orthogonal to the facet's `count` largest edges, on the side of `hint`. Gram-Schmidt with pivoting; where
     /// the facet is flat in more than one direction, any of its normals will do.
     #[cold]
-    fn repair(&self, vertices: &[Index; N], hint: &Vector<T, N>) -> Option<Vector<T, N>> {
+    fn repair(&self, vertices: &[Index; N], hint: &Vector<T, N>, count: usize) -> Option<Vector<T, N>> {
         let mut edges = [Vector::<T, N>::zeros(); N];
         let base = self.vertices.get(usize::from(*vertices.first()?))?.point;
         for (edge, &v) in edges.iter_mut().zip(vertices) {
@@ -59,7 +81,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         for i in 0..N {
             axes[i][i] = T::one();
         }
-        for _ in 1..N {
+        for _ in 0..count {
             let Some(longest) = edges
                 .iter()
                 .copied()

@@ -1,24 +1,92 @@
 //! Convex hulls of point lists: by linear scan (any dimension), or by hill climbing on a prepared graph (3-D).
 
 use super::graph::HullGraph;
+use super::load::one_by_one;
 use super::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled};
 use super::{Failure, Support};
 use crate::scalar::{Real, Vector};
 
-/// A candidate: its product with the direction, and the point.
-type Candidate<'a, T, const N: usize> = (T, &'a [T; N]);
-
-/// u.p, with relative error N roundoffs of |u| |p|.
-#[inline(always)]
-fn product<T: Real, const N: usize>(u: &Vector<T, N>, p: &[T; N]) -> T {
-    // -0 + x is x, so the compiler drops the first addition; 0 + x is not (x = -0).
-    u.iter().zip(p).fold(-T::zero(), |s, (&a, &b)| s + a * b)
+/// A list of points that is not empty, and the search for the farthest one. Heights above a plane are products u.p; with
+/// `FAR`, u.(p - first), which is more accurate where all points are far from the origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct List<'a, T, const N: usize> {
+    points: &'a [[T; N]],
+    first: &'a [T; N],
 }
 
-/// The larger one; the first one when equal.
-#[inline(always)]
-fn better<'a, T: Real, const N: usize>(a: Candidate<'a, T, N>, b: Candidate<'a, T, N>) -> Candidate<'a, T, N> {
-    if b.0 > a.0 { b } else { a }
+impl<'a, T: Real, const N: usize> List<'a, T, N> {
+    /// `None` for an empty list. Coordinates are not looked at.
+    #[inline(always)]
+    pub fn new(points: &'a [[T; N]]) -> Option<Self> {
+        points.first().map(|first| List { points, first })
+    }
+
+    /// Relative error N roundoffs of |u| |p|, with `FAR` N + 1 of |u| |p - first|.
+    #[inline(always)]
+    fn height<const FAR: bool>(&self, u: &Vector<T, N>, p: &[T; N]) -> T {
+        let terms = u.iter().zip(p.iter().zip(self.first));
+        // -0 + x is x, so the compiler drops the first addition; 0 + x is not (x = -0).
+        terms.fold(-T::zero(), |s, (&a, (&x, &c))| s + a * if FAR { x - c } else { x })
+    }
+
+    /// The farthest point for a direction in range, the first one of equals. Four at a time, as a tournament of values and small
+    /// indices: a running maximum would make every point wait for the one before it, and selecting points instead of
+    /// indices is a fifth slower.
+    #[inline(always)]
+    pub fn scan<const FAR: bool>(&self, u: &Vector<T, N>) -> &'a [T; N] {
+        let mut best = (-T::HUGE, self.first);
+        let better = |a: (T, &'a [T; N]), b: (T, &'a [T; N])| if b.0 > a.0 { b } else { a };
+        let (fours, rest) = self.points.as_chunks::<4>();
+        for four in fours {
+            let [a, b, c, d] = four.each_ref().map(|p| self.height::<FAR>(u, p));
+            let (left, i) = (a.at_least(b), usize::from(b > a));
+            let (right, j) = (c.at_least(d), 2 + usize::from(d > c));
+            let (most, k) = (left.at_least(right), if right > left { j } else { i });
+            // Always there: k < 4.
+            if let Some(p) = four.get(k) {
+                best = better(best, (most, p));
+            }
+        }
+        for p in rest {
+            best = better(best, (self.height::<FAR>(u, p), p));
+        }
+        best.1
+    }
+
+    /// Best of `best` and the listed vertices.
+    #[inline(always)]
+    fn best_of<const FAR: bool>(&self, u: &Vector<T, N>, list: &[u16], best: Option<(T, u16)>) -> Option<(T, u16)> {
+        let mut best = best;
+        for &vertex in list {
+            if let Some(p) = self.points.get(usize::from(vertex)) {
+                let height = self.height::<FAR>(u, p);
+                if best.is_none_or(|(most, _)| height > most) {
+                    best = Some((height, vertex));
+                }
+            }
+        }
+        best
+    }
+
+    /// Where climbing the graph ends, for a direction in range: see [`Hull`].
+    #[inline(always)]
+    pub fn climb<const FAR: bool>(&self, graph: &HullGraph<'_>, u: &Vector<T, N>) -> &'a [T; N] {
+        let mut best = self.best_of::<FAR>(u, graph.seeds(), None);
+        // Each step is strictly better than the one before, so there are fewer steps than points: the bound is for
+        // the reader.
+        for _ in 0..self.points.len() {
+            let Some((height, vertex)) = best else { break };
+            let next = self.best_of::<FAR>(u, graph.neighbors(vertex), best);
+            if next.is_none_or(|(most, _)| most <= height) {
+                break;
+            }
+            best = next;
+        }
+        match best.and_then(|(_, vertex)| self.points.get(usize::from(vertex))) {
+            Some(p) => p,
+            None => self.scan::<FAR>(u),
+        }
+    }
 }
 
 /// The convex hull of a list of points, in any dimension, by linear scan: N products per point. Among equals
@@ -36,10 +104,9 @@ fn better<'a, T: Real, const N: usize>(a: Candidate<'a, T, N>, b: Candidate<'a, 
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Points<'a, T, const N: usize> {
-    points: &'a [[T; N]],
-    first: &'a [T; N],
+    list: List<'a, T, N>,
     extent: T,
-    /// Largest distance from `first`, where that is what products are measured by.
+    /// Largest distance from the first point, where that is what products are measured by.
     spread: Option<T>,
 }
 
@@ -49,7 +116,7 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
     /// # Errors
     /// [`ShapeError::Empty`], [`ShapeError::NonFinite`].
     pub fn new(points: &'a [[T; N]]) -> Result<Self, ShapeError> {
-        let first = points.first().ok_or(ShapeError::Empty)?;
+        let list = List::new(points).ok_or(ShapeError::Empty)?;
         check_numbers(points.iter().flatten())?;
         // The norms of points scaled by the largest coordinate: no square overflows, none that counts underflows.
         let size = points.iter().flatten().fold(T::zero(), |m, &x| m.at_least(x).at_least(-x));
@@ -58,60 +125,31 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
             above(size * points.iter().fold(T::zero(), |m, p| m.at_least(scale(p))), 2)
         };
         let extent = if size > T::zero() { reach(Vector::zeros()) } else { T::zero() };
-        let spread = if size > T::zero() { reach(Vector::from(*first)) } else { T::zero() };
+        let spread = if size > T::zero() { reach(Vector::from(*list.first)) } else { T::zero() };
         let spread = (spread * T::count(4) < extent).then_some(spread);
-        Ok(Self { points, first, extent, spread })
-    }
-
-    /// What the scan compares: u.p, or u.(p - first) where that is more accurate.
-    #[inline(always)]
-    fn height(&self, u: &Vector<T, N>, p: &[T; N]) -> T {
-        if self.spread.is_none() {
-            return product(u, p);
-        }
-        let terms = u.iter().zip(p.iter().zip(self.first));
-        terms.fold(-T::zero(), |s, (&a, (&x, &c))| s + a * (x - c))
+        Ok(Self { list, extent, spread })
     }
 
     /// The points.
     #[must_use]
     pub fn points(&self) -> &'a [[T; N]] {
-        self.points
+        self.list.points
     }
 
-    /// Scan for a direction in range. Four at a time, as a tournament of values and small indices: a running maximum
-    /// would make every point wait for the one before it, and selecting points instead of indices is a fifth slower.
+    /// `u` itself, or a multiple whose products with the points are in range.
     #[inline(always)]
-    fn scan(&self, u: &Vector<T, N>) -> &'a [T; N] {
-        // Two copies of the loop, each with one way to measure.
-        if self.spread.is_none() { self.scan_by(|p| product(u, p)) } else { self.scan_by(|p| self.height(u, p)) }
-    }
-
-    #[inline(always)]
-    fn scan_by(&self, height: impl Fn(&[T; N]) -> T) -> &'a [T; N] {
-        let mut best = (-T::HUGE, self.first);
-        let (fours, rest) = self.points.as_chunks::<4>();
-        for four in fours {
-            let [a, b, c, d] = four.each_ref().map(&height);
-            let (left, i) = (a.at_least(b), usize::from(b > a));
-            let (right, j) = (c.at_least(d), 2 + usize::from(d > c));
-            let (most, k) = (left.at_least(right), if right > left { j } else { i });
-            // Always there: k < 4.
-            if let Some(p) = four.get(k) {
-                best = better(best, (most, p));
-            }
-        }
-        for p in rest {
-            best = better(best, (height(p), p));
-        }
-        best.1
+    fn in_range(&self, u: &Vector<T, N>) -> Vector<T, N> {
+        let u = one_by_one(u);
+        if in_range(&u, self.extent) { u } else { rescaled(&u, self.extent) }
     }
 }
 
 impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        let p = if in_range(u, self.extent) { self.scan(u) } else { self.scan(&rescaled(u, self.extent)) };
+        let u = self.in_range(u);
+        // Two copies of the loop, each with one way to measure.
+        let p = if self.spread.is_none() { self.list.scan::<false>(&u) } else { self.list.scan::<true>(&u) };
         Ok(Vector::from(*p))
     }
     fn extent(&self) -> T {
@@ -124,7 +162,7 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
         }
     }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
-        self.spread.map(|spread| (Vector::from(*self.first), spread))
+        self.spread.map(|spread| (Vector::from(*self.list.first), spread))
     }
 }
 
@@ -151,48 +189,14 @@ impl<'a, T: Real> Hull<'a, T> {
     pub fn new(points: &'a [[T; 3]], graph: HullGraph<'a>) -> Result<Self, ShapeError> {
         Ok(Self { all: Points::new(points)?, graph })
     }
-
-    /// Best of `best` and the listed vertices.
-    #[inline(always)]
-    fn best_of(&self, u: &Vector<T, 3>, list: &[u16], best: Option<(T, u16)>) -> Option<(T, u16)> {
-        let mut best = best;
-        for &vertex in list {
-            if let Some(p) = self.all.points.get(usize::from(vertex)) {
-                let value = self.all.height(u, p);
-                if best.is_none_or(|(most, _)| value > most) {
-                    best = Some((value, vertex));
-                }
-            }
-        }
-        best
-    }
-
-    /// Climb for a direction in range.
-    #[inline]
-    fn climb(&self, u: &Vector<T, 3>) -> &'a [T; 3] {
-        let mut best = self.best_of(u, self.graph.seeds(), None);
-        // Each step is strictly better than the one before, so there are fewer steps than points: the bound is for
-        // the reader.
-        for _ in 0..self.all.points.len() {
-            let Some((value, vertex)) = best else { break };
-            let next = self.best_of(u, self.graph.neighbors(vertex), best);
-            if next.is_none_or(|(more, _)| more <= value) {
-                break;
-            }
-            best = next;
-        }
-        match best.and_then(|(_, vertex)| self.all.points.get(usize::from(vertex))) {
-            Some(p) => p,
-            None => self.all.scan(u),
-        }
-    }
 }
 
 impl<T: Real> Support<T, 3> for Hull<'_, T> {
     #[inline]
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        let size = self.all.extent;
-        let p = if in_range(u, size) { self.climb(u) } else { self.climb(&rescaled(u, size)) };
+        let (list, u) = (&self.all.list, self.all.in_range(u));
+        let near = self.all.spread.is_none();
+        let p = if near { list.climb::<false>(&self.graph, &u) } else { list.climb::<true>(&self.graph, &u) };
         Ok(Vector::from(*p))
     }
     #[inline]

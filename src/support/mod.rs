@@ -25,6 +25,7 @@ use crate::scalar::{Real, Vector};
 mod combine;
 mod graph;
 mod hull;
+mod load;
 mod shapes;
 mod solids;
 
@@ -32,6 +33,11 @@ pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
 pub use hull::{Hull, Points};
+#[cfg(feature = "capi")]
+pub(crate) use hull::List;
+pub(crate) use load::one_by_one;
+#[cfg(feature = "capi")]
+pub(crate) use shapes::near_unit;
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
 pub use solids::{Capsule, Cone, Cylinder};
 

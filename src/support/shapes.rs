@@ -11,6 +11,7 @@
 //! tests one sum that it has at hand, and takes a rescaled direction in a cold path when it is out of range. That
 //! branch is always predicted; scaling every direction would cost a division.
 
+use super::load::one_by_one;
 use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
 
@@ -67,9 +68,8 @@ pub(crate) fn check_sizes<'a, T: Real>(mut sizes: impl Iterator<Item = &'a T>) -
 
 /// A list of coordinates is usable: each finite and not too large.
 pub(crate) fn check_numbers<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
-    // NaN fails the comparison, so there is no test for it.
-    let usable = |&x: &T| magnitude(x) <= ceiling() && x.finite();
-    if numbers.all(usable) { Ok(()) } else { Err(ShapeError::NonFinite) }
+    // NaN and infinity fail the comparison, so there is no test for them.
+    if numbers.all(|&x| magnitude(x) <= ceiling()) { Ok(()) } else { Err(ShapeError::NonFinite) }
 }
 
 /// Do products of `u` with coordinates of size up to `size` neither overflow nor lose digits that count?
@@ -92,6 +92,15 @@ pub(crate) fn rescaled<T: Real, const N: usize>(u: &Vector<T, N>, size: T) -> Ve
     } else {
         *u
     }
+}
+
+/// A direction for points of usual sizes: `u` itself if it is not far from unit length, else a multiple that is.
+#[cfg(feature = "capi")]
+#[inline(always)]
+pub(crate) fn near_unit<T: Real, const N: usize>(u: &Vector<T, N>) -> Vector<T, N> {
+    let s = u.iter().fold(-T::zero(), |s, &x| s + magnitude(x));
+    let far = T::count(1 << 16);
+    if s < far && s * far > T::one() { *u } else { rescaled(u, T::one()) }
 }
 
 /// w / |w| with relative error (N/2 + 4) roundoff for every finite `w`; zero for zero.
@@ -192,7 +201,13 @@ impl<T: Real, const N: usize> Sphere<T, N> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(radius: T) -> Result<Self, ShapeError> {
         check_sizes(core::iter::once(&radius))?;
-        Ok(Self { radius })
+        Ok(Self::trusted(radius))
+    }
+
+    /// The same for a radius that has been checked before.
+    #[inline(always)]
+    pub(crate) fn trusted(radius: T) -> Self {
+        Self { radius }
     }
 }
 
@@ -232,14 +247,20 @@ impl<T: Real, const N: usize> BoxShape<T, N> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(half: Vector<T, N>) -> Result<Self, ShapeError> {
         check_sizes(half.iter())?;
-        Ok(Self { half })
+        Ok(Self::trusted(half))
+    }
+
+    /// The same for sizes that have been checked before.
+    #[inline(always)]
+    pub(crate) fn trusted(half: Vector<T, N>) -> Self {
+        Self { half }
     }
 }
 
 impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.half.zip_map(u, signed))
+        Ok(self.half.zip_map(&one_by_one(u), signed))
     }
     fn extent(&self) -> T {
         length(&self.half)
@@ -284,13 +305,19 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(semi: Vector<T, N>) -> Result<Self, ShapeError> {
         check_sizes(semi.iter())?;
+        Ok(Self::trusted(semi))
+    }
+
+    /// The same for semi axes that have been checked before. One division.
+    #[inline(always)]
+    pub(crate) fn trusted(semi: Vector<T, N>) -> Self {
         let (most, least) = (largest(&semi), semi.iter().fold(T::HUGE, |m, &x| m.at_most(x)));
         let ball = if least > most * T::of(0.25) {
             least / most * least * (T::one() - T::count(8) * T::ROUNDOFF)
         } else {
             T::zero()
         };
-        Ok(Self { semi, ball })
+        Self { semi, ball }
     }
 
     #[cold]
@@ -311,6 +338,7 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
 impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        let u = &one_by_one(u);
         let w = self.semi.component_mul(u);
         let (s, t) = (w.dot(&w), u.dot(u));
         if s > floor() && s < T::HUGE && t > floor() && t < T::HUGE {

@@ -1,5 +1,6 @@
 //! Solids of revolution in three dimensions. The axis is z, the centre of the height is the origin.
 
+use super::load::one_by_one;
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
 use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
@@ -27,13 +28,20 @@ impl<T: Real> Cylinder<T> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(radius: T, half_height: T) -> Result<Self, ShapeError> {
         check_sizes([radius, half_height].iter())?;
-        Ok(Self { radius, half_height })
+        Ok(Self::trusted(radius, half_height))
+    }
+
+    /// The same for sizes that have been checked before.
+    #[inline(always)]
+    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+        Self { radius, half_height }
     }
 }
 
 impl<T: Real> Support<T, 3> for Cylinder<T> {
     #[inline]
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let u = one_by_one(u);
         let n = unit(&Vector::<T, 2>::new(u.x, u.y));
         Ok(Vector::<T, 3>::new(self.radius * n.x, self.radius * n.y, signed(self.half_height, u.z)))
     }
@@ -70,7 +78,13 @@ impl<T: Real> Capsule<T> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(radius: T, half_height: T) -> Result<Self, ShapeError> {
         check_sizes([radius, half_height].iter())?;
-        Ok(Self { radius, half_height })
+        Ok(Self::trusted(radius, half_height))
+    }
+
+    /// The same for sizes that have been checked before.
+    #[inline(always)]
+    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+        Self { radius, half_height }
     }
 }
 
@@ -120,7 +134,13 @@ impl<T: Real> Cone<T> {
     /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
     pub fn new(radius: T, half_height: T) -> Result<Self, ShapeError> {
         check_sizes([radius, half_height].iter())?;
-        Ok(Self { radius, half_height })
+        Ok(Self::trusted(radius, half_height))
+    }
+
+    /// The same for sizes that have been checked before.
+    #[inline(always)]
+    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+        Self { radius, half_height }
     }
 
     /// For a direction whose products with the sizes are in range.
@@ -140,6 +160,7 @@ impl<T: Real> Cone<T> {
 impl<T: Real> Support<T, 3> for Cone<T> {
     #[inline]
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let u = &one_by_one(u);
         let size = self.radius + self.half_height;
         if in_range(u, size) { Ok(self.choose(u)) } else { Ok(self.choose(&rescaled(u, size))) }
     }

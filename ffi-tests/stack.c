@@ -1,0 +1,88 @@
+/* How much stack a query takes: runs it on a painted stack of its own and looks how far the paint is gone. */
+#include "qdist.h"
+#include <stdio.h>
+#include <string.h>
+#include <ucontext.h>
+
+enum { STACK = 128 * 1024 };
+static union {
+    uint64_t align;
+    unsigned char bytes[STACK];
+} stack;
+static ucontext_t back, there;
+static void (*task)(void);
+
+static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 64, 2048)];
+static int failures;
+
+static void trampoline(void) { task(); }
+
+static long used(void (*run)(void)) {
+    memset(stack.bytes, 0xA5, STACK);
+    task = run;
+    getcontext(&there);
+    there.uc_stack.ss_sp = stack.bytes;
+    there.uc_stack.ss_size = STACK;
+    there.uc_link = &back;
+    makecontext(&there, trampoline, 0);
+    swapcontext(&back, &there);
+    long untouched = 0;
+    while (untouched < STACK && stack.bytes[untouched] == 0xA5) untouched++;
+    return STACK - untouched;
+}
+
+static void nothing(void) {}
+
+#define DEPTH_OF_BOXES(scalar, real)                                                             \
+    static void boxes_##scalar(void) {                                                           \
+        qdist_solver *solver;                                                                    \
+        qdist_box_##scalar box = {{(real)1, (real)2, (real)3}};                                  \
+        qdist_body_##scalar a, b;                                                                \
+        qdist_depth_##scalar depth;                                                              \
+        if (qdist_solver_init3_##scalar(memory, sizeof memory, 64, 128, &solver)) failures++;    \
+        if (qdist_body_box_##scalar(&a, &box) || qdist_body_box_##scalar(&b, &box)) failures++;  \
+        for (int i = 0; i < 40; i++) { /* overlapping, touching, apart; edges against faces */   \
+            real c = (real)0.8, s = (real)0.6;                                                   \
+            real turned[9] = {c, -s, 0, s, c, 0, 0, 0, 1};                                       \
+            memcpy(b.rotation, turned, sizeof turned);                                           \
+            b.translation[0] = (real)i / 10;                                                     \
+            b.translation[2] = (real)i / 7;                                                      \
+            depth.struct_size = sizeof depth;                                                    \
+            if (qdist_depth3_##scalar(solver, &a, &b, NULL, &depth)) failures++;                 \
+        }                                                                                        \
+    }
+DEPTH_OF_BOXES(f32, float)
+DEPTH_OF_BOXES(f64, double)
+
+/* The unit ball's worst case in 6-D: a set that expansion has to work on. */
+static int32_t rounded(void *user, const double *u, double *p) {
+    (void)user;
+    double sum = 0;
+    for (int i = 0; i < 6; i++) sum += u[i] * u[i] * (1 + i);
+    if (sum <= 0) return 1;
+    double scale = 1;
+    for (int k = 0; k < 60; k++) scale = 0.5 * (scale + sum / scale);
+    for (int i = 0; i < 6; i++) p[i] = u[i] * (1 + i) / scale;
+    return 0;
+}
+
+static void six(void) {
+    qdist_solver *solver;
+    qdist_set_f64 set;
+    qdist_result_f64 result;
+    memset(&set, 0, sizeof set);
+    set.support = rounded;
+    if (qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver)) failures++;
+    result.struct_size = sizeof result;
+    if (qdist_solve6_f64(solver, &set, NULL, NULL, &result)) failures++;
+}
+
+int main(void) {
+    long base = used(nothing);
+    long f32 = used(boxes_f32) - base, f64 = used(boxes_f64) - base, n6 = used(six) - base;
+    printf("stack in bytes: depth of boxes f32 %ld, f64 %ld; d_Q in 6-D f64 %ld\n", f32, f64, n6);
+    /* Not a golden number; a guard against an array that slips onto the stack. */
+    if (f32 > 8 * 1024 || f64 > 12 * 1024 || n6 > 24 * 1024) failures++;
+    printf("stack: %d passed, %d failed\n", failures ? 0 : 1, failures ? 1 : 0);
+    return failures != 0;
+}
