@@ -2,18 +2,20 @@
 //!
 //!     cargo run --release --example fuzz -- --seconds 60 [--seed 1] [--case 17] [--with thin,tiny,words]
 //!
-//! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned, identical, touching or far
-//! away; all gauges in 2 to 6 dimensions; any capacity, tolerance, threshold and limit; callbacks that fail or return
-//! nonsense; both scalar types. For every answer:
+//! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned,
+//! identical, touching or far away; all gauges in 2 to 6 dimensions; any capacity, tolerance, threshold and
+//! limit; callbacks that fail or return nonsense; both scalar types. For every answer:
 //!
-//! * it keeps the promises of `common::memory::broken_promise` (no NaN, lower <= upper, outcome and numbers agree, ...);
+//! * it keeps the promises of `common::memory::broken_promise` (no NaN, lower <= upper, outcome and numbers
+//!   agree, ...);
 //! * its direction proves its upper bound, by textbook support functions in double-double;
-//! * no direction of a search, and no other answer (another capacity, tolerance, guess, scalar type), contradicts its bracket;
+//! * no direction of a search, and no other answer (another capacity, tolerance, guess, scalar type), contradicts
+//!   its bracket;
 //! * pairs of small polytopes have the exact depth in their bracket;
 //! * it comes in time.
 //!
-//! `--with` includes what is known not to hold yet (the ignored tests in `tests/regressions.rs`): `thin` sets, `tiny` positions in
-//! f32, `words` of a set about its extent, error and radius that are no numbers.
+//! `--with` includes what is known not to hold yet (the ignored tests in `tests/regressions.rs`): `thin` sets,
+//! `tiny` positions in f32, `words` of a set about its extent, error and radius that are no numbers.
 //!
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 

@@ -49,7 +49,11 @@ pub(crate) struct Query<'q, T, const N: usize> {
     per_ball: T,
     gauge_error: T,
     pub bounds: Bounds<T>,
+    /// Tolerance and threshold in scaled units.
     pub options: Options<T, N>,
+    /// A power of two that brings the set to a size near 1, so that no product under- or overflows; 1 for sets that are
+    /// near it already. All lengths of a query are scaled by it, the answer's are scaled back: both exactly.
+    scale: T,
     /// Largest norm of a point seen.
     reach: T,
     /// The best upper bound: unit direction, support value, value of Q, and their quotient without margins.
@@ -81,6 +85,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             gauge_error: q.error(),
             bounds: Bounds { support_error: a.error(), radius, dimension: N, unknown_extent: !(extent > T::zero()) },
             options,
+            scale: T::one(),
             reach: T::zero(),
             direction: Vector::zeros(),
             height: T::HUGE,
@@ -93,6 +98,38 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             support_calls: 0,
             dimension: N,
         }
+    }
+
+    /// Chooses the scale. A set that does not know its extent is asked once.
+    pub fn normalize(&mut self) -> Result<(), Failure> {
+        let known = self.a.extent();
+        let extent = if known > T::zero() {
+            known
+        } else {
+            self.support_calls = self.support_calls.saturating_add(1);
+            self.a.support(&self.first_direction())?.iter().fold(T::zero(), |m, x| m.at_least(x.abs()))
+        };
+        let size = extent + self.bounds.radius;
+        let near = T::count(1 << 10);
+        // (Sizes whose inverse is no normal number are left alone.)
+        if !(size < near && size * near > T::one()) && size > T::TINY && size * T::count(4) < T::one() / T::TINY {
+            let scale = T::one() / size.power_of_two();
+            self.scale = scale;
+            self.bounds.support_error *= scale;
+            self.bounds.radius *= scale;
+            self.options.absolute *= scale;
+            self.options.threshold = self.options.threshold.map(|t| t * scale);
+        }
+        Ok(())
+    }
+
+    /// A bound in the caller's units, rounded outwards where it becomes subnormal.
+    fn unscaled(&self, value: T, outward: T) -> T {
+        if self.scale == T::one() || value.abs() >= T::HUGE {
+            return value;
+        }
+        let value = value / self.scale;
+        if value.abs() < T::TINY { value + outward * T::TINY } else { value.at_least(-T::HUGE).at_most(T::HUGE) }
     }
 
     /// The direction to look in first.
@@ -121,6 +158,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         } else {
             self.a.support_with_witness(direction)?
         };
+        let (point, witness) =
+            if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
         let squared = point.dot(&point);
         if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
@@ -301,7 +340,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.exhaustive = true;
         let direction = self.direction;
         self.support_calls = self.support_calls.saturating_add(1);
-        let height = direction.dot(&self.a.exhaustive(&direction)?);
+        let height = direction.dot(&self.a.exhaustive(&direction)?) * self.scale;
         if !height.finite() {
             return Err(Failure(crate::NOT_FINITE));
         }
@@ -318,7 +357,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         &mut self,
         stop: Stop,
         lower: T,
-        witness: Simplex<T, N>,
+        mut witness: Simplex<T, N>,
         polytope: &Polytope<'_, T, N>,
     ) -> Answer<T, N> {
         let stop = match self.verify() {
@@ -338,10 +377,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             (Stop::Above | Stop::Below, _) => Stop::Rounding,
             (stop, _) => stop,
         };
+        let outcome = stop.outcome(lower, upper, met);
+        witness.rescale(T::one() / self.scale);
         Answer {
-            outcome: stop.outcome(lower, upper, met),
-            lower,
-            upper,
+            outcome,
+            lower: self.unscaled(lower, -T::one()),
+            upper: self.unscaled(upper, T::one()),
             direction: self.direction,
             witness,
             dimension: self.dimension,

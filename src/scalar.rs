@@ -16,6 +16,8 @@ pub trait Real: RealField + Copy {
     const ROUNDOFF: Self;
     /// The largest finite number: stands for "unbounded" where no arithmetic follows.
     const HUGE: Self;
+    /// The smallest normal number.
+    const TINY: Self;
     /// A sum of squares above this has lost nothing that counts to underflow: the smallest normal number / u^2.
     const SAFE_SQUARE: Self;
     /// The default relative tolerance of a query: 1e-6 in `f64`, 1e-4 in `f32`.
@@ -35,6 +37,8 @@ pub trait Real: RealField + Copy {
     fn count(n: usize) -> Self;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
+    /// The power of two with the same exponent, for a normal number > 0.
+    fn power_of_two(self) -> Self;
     /// `self` if it is larger or `other` is not a number (unlike `RealField::max`, never a call).
     #[inline(always)]
     fn at_least(self, other: Self) -> Self {
@@ -48,10 +52,11 @@ pub trait Real: RealField + Copy {
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:path, $tolerance:expr, $split:expr) => {
+    ($t:ident, $sqrt:path, $tolerance:expr, $split:expr, $exponent:expr) => {
         impl Real for $t {
             const ROUNDOFF: Self = $t::EPSILON / 2.0;
             const HUGE: Self = $t::MAX;
+            const TINY: Self = $t::MIN_POSITIVE;
             const SAFE_SQUARE: Self = $t::MIN_POSITIVE / (Self::ROUNDOFF * Self::ROUNDOFF);
             const RELATIVE_TOLERANCE: Self = $tolerance;
             const SPLIT: Self = $split;
@@ -79,12 +84,16 @@ macro_rules! real {
             fn finite(self) -> bool {
                 self.is_finite()
             }
+            #[inline]
+            fn power_of_two(self) -> Self {
+                $t::from_bits(self.to_bits() & $exponent)
+            }
         }
     };
 }
 
-real!(f32, libm::sqrtf, 1e-4, 4097.0);
-real!(f64, libm::sqrt, 1e-6, 134_217_729.0);
+real!(f32, libm::sqrtf, 1e-4, 4097.0, 0x7F80_0000);
+real!(f64, libm::sqrt, 1e-6, 134_217_729.0, 0x7FF0_0000_0000_0000);
 
 /// Euclidean norm, also where squares underflow.
 #[inline(always)]

@@ -138,6 +138,16 @@ impl<T: Real, const N: usize> Simplex<T, N> {
         }
     }
 
+    /// Multiplies all points and witnesses.
+    pub(crate) fn rescale(&mut self, factor: T) {
+        if factor != T::one() {
+            for corner in &mut self.corners {
+                corner.vertex.point *= factor;
+                corner.vertex.witness *= factor;
+            }
+        }
+    }
+
     /// Unit vector from the simplex's point, at `distance`, towards the origin.
     ///
     /// The point is known to a roundoff of the vertices' norms, so close to the origin its direction is not. But the
@@ -173,13 +183,13 @@ impl<T: Real, const N: usize> Simplex<T, N> {
                     step = T::zero();
                 }
             }
-            let mut sum = T::zero();
-            for (corner, &goal) in self.corners.iter_mut().zip(&target) {
-                corner.weight = (corner.weight + (goal - corner.weight) * step).at_least(T::zero());
-                sum += corner.weight;
+            let moved = |weight: T, goal: T| (weight + (goal - weight) * step).at_least(T::zero());
+            let sum = self.corners.iter().zip(&target).fold(T::zero(), |sum, (c, &goal)| sum + moved(c.weight, goal));
+            if !(sum > T::zero()) {
+                return false;
             }
-            for corner in &mut self.corners {
-                corner.weight /= sum;
+            for (corner, &goal) in self.corners.iter_mut().zip(&target) {
+                corner.weight = moved(corner.weight, goal) / sum;
             }
             if step >= T::one() {
                 return true;

@@ -55,6 +55,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     fn run(&mut self, mut query: Query<'_, T, N>) -> Answer<T, N> {
+        if let Err(failure) = query.normalize() {
+            return self.give_up(&mut query, failure);
+        }
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
         if query.bounds.radius > T::zero() {

@@ -1,5 +1,6 @@
-//! Every way to stop early leaves a true bracket: iteration limits, capacities from the least allowed upwards, thresholds close
-//! to d, tolerances from nothing to everything, odd guesses. In both scalar types, 2 to 6 dimensions.
+//! Every way to stop early leaves a true bracket: iteration limits, capacities from the least allowed upwards,
+//! thresholds close to d, tolerances from nothing to everything, odd guesses. In both scalar types, 2 to 6
+//! dimensions.
 
 mod common;
 
@@ -34,7 +35,8 @@ fn least<const N: usize>(values: impl Fn(usize) -> f64) -> f64 {
     (0..N).map(values).fold(f64::MAX, f64::min)
 }
 
-/// Sets with a closed form: moved boxes and centred ellipsoids, sheared boxes, with and without a ball term, inside and outside.
+/// Sets with a closed form: moved boxes and centred ellipsoids, sheared boxes, with and without a ball term,
+/// inside and outside.
 fn problems<T: Real, const N: usize>(seed: u64) -> Vec<Known<T, N>> {
     let mut dice = Dice::new(seed);
     let mut all: Vec<Known<T, N>> = Vec::new();
@@ -124,8 +126,8 @@ macro_rules! every_type_and_dimension {
     };
 }
 
-/// More iterations: the bracket stays true, and inside it does not get worse by more than rounding. (Outside and on the surface a
-/// second phase begins when that has been found out, and the bracket starts anew.)
+/// More iterations: the bracket stays true, and inside it does not get worse by more than rounding. (Outside and
+/// on the surface a second phase begins when that has been found out, and the bracket starts anew.)
 fn limits<T: Real, const N: usize>() {
     let size = (256, 4096);
     let mut memory = Memory::new::<T, N>(size.0, size.1);

@@ -1,8 +1,8 @@
 //! The case files: every bracket contains the reference, every certificate proves its bound, and the brackets are as
 //! narrow as asked for.
 //!
-//! The fixtures in `tests/data` always run. The full sets lie beside the project (`../shared/data/convex`); when they are
-//! missing, that is an error with `CI=true` and a printed line otherwise.
+//! The fixtures in `tests/data` always run. The full sets lie beside the project (`../shared/data/convex`); when
+//! they are missing, that is an error with `CI=true` and a printed line otherwise.
 
 mod common;
 
@@ -54,8 +54,8 @@ fn run<T: Real>(case: &Case, options: &Options<T, 3>, memory: &mut Workspace<T, 
     let seen = Seen::from(&r);
     let mut wrong = Vec::new();
     wrong.extend(broken_promise(&seen, options, VERTICES, FACETS));
-    // The files have the reference rounded to f64, and f32 sees other bodies than the file: each coordinate moves by up to
-    // 2^-24 of its size. 8 times that, of the coordinates of both bodies, covers the depth.
+    // The files have the reference rounded to f64, and f32 sees other bodies than the file: each coordinate
+    // moves by up to 2^-24 of its size. 8 times that, of the coordinates of both bodies, covers the depth.
     let single = T::ROUNDOFF.to_f64() > 1e-10;
     let input =
         if single { 8.0 * T::ROUNDOFF.to_f64() * (reach(&case.bodies[0]) + reach(&case.bodies[1])) } else { 0.0 };

@@ -1,8 +1,10 @@
 //! Every answer carries its proof; here each proof is checked without the crate's arithmetic.
 //!
-//! * The reported direction is a unit vector, and the textbook support functions of A and Q along it (in double-double) prove
+//! * The reported direction is a unit vector, and the textbook support functions of A and Q along it (in
+//!   double-double) prove
 //!   the upper bound.
-//! * The witness simplex is made of points of A with weights that are a convex combination; for the ball its point is as far
+//! * The witness simplex is made of points of A with weights that are a convex combination; for the ball its
+//!   point is as far
 //!   from the origin as the lower bound says.
 //! * No direction anywhere proves less than the lower bound: a search over directions stays above it.
 //! * The witness points of a pair lie on the bodies, and their difference is depth * normal.
@@ -263,8 +265,8 @@ fn bodies<T: Real>() {
                     [r.point_a.x, r.point_a.y, r.point_a.z].map(Real::to_f64),
                     [r.point_b.x, r.point_b.y, r.point_b.z].map(Real::to_f64),
                 );
-                // A direction whose height is off by a share t may be off by an angle of the root of 2 t, and the point that
-                // goes with it by that times the size of the cores' distance.
+                // A direction whose height is off by a share t may be off by an angle of the root of 2 t, and
+                // the point that goes with it by that times the size of the cores' distance.
                 let radii = (sa.radius() + sb.radius()).to_f64();
                 let slack = 2.0 * (2.0 * options.relative.to_f64()).sqrt() * (seen.upper.abs() + radii) + 2000.0 * u;
                 for (body, w, name) in [(&a, wa, "A"), (&b, wb, "B")] {
@@ -303,8 +305,8 @@ fn bodies_prove_their_depth_in_f32() {
     bodies::<f32>();
 }
 
-/// Matrices that are off orthonormal, as far as `Body::new` takes them, are used as they are: coaxial solids are then not quite
-/// round, and ellipsoids have other axes.
+/// Matrices that are off orthonormal, as far as `Body::new` takes them, are used as they are: coaxial solids are
+/// then not quite round, and ellipsoids have other axes.
 fn skewed<T: Real>() {
     let u = T::ROUNDOFF.to_f64();
     let mut dice = Dice::new(63);

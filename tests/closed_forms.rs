@@ -68,8 +68,8 @@ fn check<T: Real, const N: usize>(what: &str, a: &dyn Support<T, N>, q: &dyn Gau
     );
 }
 
-/// The default tolerance; in `f32` that is 1e-4, and the error margins of large coordinates may not allow it: some thousand
-/// roundoffs do.
+/// The default tolerance; in `f32` that is 1e-4, and the error margins of large coordinates may not allow it:
+/// some thousand roundoffs do.
 fn asked<T: Real>() -> Want {
     Want::Relative(T::RELATIVE_TOLERANCE.to_f64().max(8000.0 * T::ROUNDOFF.to_f64()))
 }
@@ -105,8 +105,8 @@ fn length(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A box of half extents h, moved by t: the faces are at h_i - t_i and h_i + t_i. So for every Q that is symmetric to the
-/// coordinate planes, d = min (h_i - |t_i|) / h_Q(e_i).
+/// A box of half extents h, moved by t: the faces are at h_i - t_i and h_i + t_i. So for every Q that is
+/// symmetric to the coordinate planes, d = min (h_i - |t_i|) / h_Q(e_i).
 fn moved_boxes<T: Real, const N: usize>() {
     let mut dice = Dice::new(21);
     for round in 0..4 {
@@ -228,8 +228,8 @@ fn simplices<T: Real, const N: usize>() {
 }
 every_type_and_dimension!(gauges_in_a_simplex_with_the_inradius_known, simplices);
 
-/// The parallelotope M [-1, 1]^n with M = R D S (rotation, stretch, shear): facet normals are the rows of M^-1, at height 1. Every
-/// Q then has d = min 1 / h_Q(row).
+/// The parallelotope M [-1, 1]^n with M = R D S (rotation, stretch, shear): facet normals are the rows of M^-1,
+/// at height 1. Every Q then has d = min 1 / h_Q(row).
 fn parallelotopes<T: Real, const N: usize>() {
     let mut dice = Dice::new(25);
     for _ in 0..3 {
@@ -293,8 +293,8 @@ fn sums<T: Real, const N: usize>() {
 }
 every_type_and_dimension!(minkowski_sums_and_ball_terms, sums);
 
-/// A set in a coordinate subspace: d = 0 for a ball, and the dimension is told. Off the subspace, or beside the set in it: the
-/// distance.
+/// A set in a coordinate subspace: d = 0 for a ball, and the dimension is told. Off the subspace, or beside the
+/// set in it: the distance.
 fn flats<T: Real, const N: usize>() {
     for dimension in 0..N {
         let h: [f64; N] = std::array::from_fn(|i| if i < dimension { 1.0 + i as f64 / 4.0 } else { 0.0 });
@@ -749,7 +749,8 @@ fn flat_bodies<T: Real>() {
     holds::<T>("stacked plates", &Seen::from(&stacked), -0.25, asked::<T>());
     let beside = pair(&origin(&plate), &at(&plate, 3.0, 0.5, 0.0));
     holds::<T>("plates side by side", &Seen::from(&beside), -1.0, asked::<T>());
-    // A needle through a plate has a difference with volume: 2 x 4 x 2, and the needle's ends are the nearest way out.
+    // A needle through a plate has a difference with volume: 2 x 4 x 2, and the needle's ends are the nearest
+    // way out.
     let through = pair(&origin(&plate), &at(&needle, 0.25, 0.5, 0.5));
     holds::<T>("needle through a plate", &Seen::from(&through), 0.5, asked::<T>());
     let along = pair(&origin(&plate), &at(&lying, 0.25, 0.5, 0.0));

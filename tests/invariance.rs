@@ -1,8 +1,8 @@
-//! What must not change the answer, or change it in a known way: unit of length, motion, order of the bodies, scalar type, margins;
-//! and what must move it one way: inclusion.
+//! What must not change the answer, or change it in a known way: unit of length, motion, order of the bodies,
+//! scalar type, margins; and what must move it one way: inclusion.
 //!
-//! Powers of two scale floating-point numbers exactly, and signed permutations move them exactly: there the comparison
-//! needs no tolerance at all.
+//! Powers of two scale floating-point numbers exactly, and signed permutations move them exactly: there the
+//! comparison needs no tolerance at all.
 
 mod common;
 

@@ -1,8 +1,9 @@
-//! Pairs of random convex polytopes against an oracle that is exact (`common::hull`): penetration depth and distance by brute
-//! force over features, in double-double.
+//! Pairs of random convex polytopes against an oracle that is exact (`common::hull`): penetration depth and
+//! distance by brute force over features, in double-double.
 //!
-//! The inputs are exact `f64` (or `f32`) numbers, rotation matrices are used as they are, and the oracle sees the same
-//! numbers. So lower <= d <= upper is checked with no tolerance, but for the oracle's own rounding of some 1e-26.
+//! The inputs are exact `f64` (or `f32`) numbers, rotation matrices are used as they are, and the oracle sees the
+//! same numbers. So lower <= d <= upper is checked with no tolerance, but for the oracle's own rounding of some
+//! 1e-26.
 
 mod common;
 

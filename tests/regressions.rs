@@ -1,5 +1,5 @@
-//! What fuzzing (`examples/fuzz.rs`) and the other tests found, as small as it gets, by name. An ignored test is a bug that is known
-//! and not fixed.
+//! What fuzzing (`examples/fuzz.rs`) and the other tests found, as small as it gets, by name. An ignored test is
+//! a bug that is known and not fixed.
 
 mod common;
 
@@ -39,8 +39,8 @@ fn pair<T: Real>(a: &BodyText, b: &BodyText, directions: &[[f64; 3]]) -> Seen {
     seen
 }
 
-/// The surface of a thin difference folded: two facets with the same vertices and the same normal, one of them turned inside out. No
-/// facet was below the lower bound, but the surface did not go around the origin.
+/// The surface of a thin difference folded: two facets with the same vertices and the same normal, one of them
+/// turned inside out. No facet was below the lower bound, but the surface did not go around the origin.
 #[test]
 fn sliver_facets_that_turn_inside_out_in_f32() {
     let at = [206682.15625, -368593.6875, -69178.25];
@@ -112,7 +112,8 @@ fn general<const N: usize>(set: &dyn Support<f64, N>, gauge: &dyn Gauge<f64, N>)
     seen
 }
 
-/// An ellipsoid is a core and a ball inside the crate, and the ball ignored that the body's matrix is not quite orthonormal.
+/// An ellipsoid is a core and a ball inside the crate, and the ball ignored that the body's matrix is not quite
+/// orthonormal.
 #[test]
 fn an_ellipsoid_under_a_matrix_of_seven_digits() {
     // A diagonal matrix with entries off by 1e-5, within what `Body::new` takes.
@@ -133,9 +134,9 @@ fn points_nearer_than_the_root_of_the_smallest_number() {
     pair::<f64>(&a, &b, &[]);
 }
 
-/// Needles of 5e-12 and 8e-15 (sizes that are legal in f32): products of three lengths underflow, and witnesses were NaN.
+/// Needles of 5e-12 and 8e-15 (sizes that are legal in f32): products of three lengths underflow, and witnesses
+/// were NaN.
 #[test]
-#[ignore = "products of small lengths underflow"]
 fn needles_of_a_millionth_of_a_millionth_in_f32() {
     let (thin, long) = (7.704535455259863e-15, 4.7029554729738354e-12);
     let a = body("cylinder", &[thin, long], IDENTITY, [0.0; 3]);
@@ -157,7 +158,6 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
 
 /// Two points far from their frames, 4e-12 apart: what the sum that cancels leaves is of the size of their distance.
 #[test]
-#[ignore = "the error of the anchors' difference is not in the margin"]
 fn points_far_from_their_frames() {
     let p = [0.0, -34167.2734375, -34167.2734375];
     #[rustfmt::skip]

@@ -7,7 +7,7 @@ use super::status::{
 };
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
-use crate::support::{BoxShape, Failure, HullGraph, Point, Support, Symmetry};
+use crate::support::{BoxShape, Failure, Point, one_by_one};
 use core::ffi::c_void;
 
 /// The largest dimension.
@@ -60,9 +60,15 @@ pub fn known_size(size: u32, known: usize) -> Check {
 // ------------------------------------------------------------------------------------------------------------ numbers
 
 /// A length: finite, not too large, >= 0.
-#[inline]
+#[inline(always)]
 pub fn length<T: Real>(x: T) -> Check<T> {
-    BoxShape::new(Vector::<T, 1>::new(x)).map(|_| x).map_err(from_shape)
+    lengths([x]).map(|()| x)
+}
+
+/// Lengths: each finite, not too large, >= 0.
+#[inline(always)]
+pub fn lengths<T: Real, const K: usize>(list: [T; K]) -> Check {
+    BoxShape::new(Vector::<T, K>::from(list)).map(|_| ()).map_err(from_shape)
 }
 
 /// Lengths: finite, not too large, >= 0, and not all zero.
@@ -144,9 +150,12 @@ pub fn tiny<T: Real>() -> T {
 pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
     let size = largest(u);
     let limit = T::count(1 << 16);
-    if (size < limit && size * limit > T::one()) || !(size > T::zero()) {
-        return u;
-    }
+    if (size < limit && size * limit > T::one()) || !(size > T::zero()) { u } else { scaled(u, size, store) }
+}
+
+#[cold]
+#[inline(never)]
+fn scaled<'a, T: Real>(u: &'a [T], size: T, store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
     for (to, &from) in store.iter_mut().zip(u) {
         *to = from / size;
     }
@@ -177,190 +186,27 @@ pub fn in_space<T>(list: &[T]) -> &[[T; 3]] {
     list.as_chunks::<3>().0
 }
 
-/// Products of points with a direction; with `FAR`, of points relative to the first, which is more accurate where all are far
-/// from the origin.
-struct Heights<'a, T, const FAR: bool> {
-    u: &'a [T; 3],
-    first: &'a [T; 3],
-}
-
-impl<T: Real, const FAR: bool> Heights<'_, T, FAR> {
-    #[inline(always)]
-    fn of(&self, p: &[T; 3]) -> T {
-        let (u, c) = (self.u, self.first);
-        if FAR {
-            (p[0] - c[0]) * u[0] + (p[1] - c[1]) * u[1] + (p[2] - c[2]) * u[2]
-        } else {
-            p[0] * u[0] + p[1] * u[1] + p[2] * u[2]
-        }
-    }
-}
-
-/// [`farthest`] in space. Four at a time, as a tournament of values and small indices: a running maximum would make every
-/// point wait for the one before it.
-#[inline(always)]
-pub fn farthest3<'a, T: Real, const FAR: bool>(points: &'a [[T; 3]], u: &[T; 3]) -> Option<&'a [T; 3]> {
-    let first = points.first()?;
-    let heights = Heights::<T, FAR> { u, first };
-    let mut best = (heights.of(first), first);
-    let (fours, rest) = points.as_chunks::<4>();
-    for four in fours {
-        let [a, b, c, d] = four.each_ref().map(|p| heights.of(p));
-        let (left, i) = if b > a { (b, 1) } else { (a, 0) };
-        let (right, j) = if d > c { (d, 3) } else { (c, 2) };
-        let (most, k) = if right > left { (right, j) } else { (left, i) };
-        if let Some(p) = four.get(k)
-            && most > best.0
-        {
-            best = (most, p);
-        }
-    }
-    for p in rest {
-        let height = heights.of(p);
-        if height > best.0 {
-            best = (height, p);
-        }
-    }
-    Some(best.1)
-}
-
-/// The vertex that climbing a hull's graph ends at, see [`Hull`](crate::support::Hull).
-#[inline(always)]
-pub fn climb<'a, T: Real, const FAR: bool>(
-    points: &'a [[T; 3]],
-    graph: &HullGraph<'_>,
-    u: &[T; 3],
-) -> Option<&'a [T; 3]> {
-    let heights = Heights::<T, FAR> { u, first: points.first()? };
-    let best_of = |list: &[u16], mut best: Option<(T, u16)>| {
-        for &vertex in list {
-            if let Some(p) = points.get(usize::from(vertex)) {
-                let height = heights.of(p);
-                if best.is_none_or(|(most, _)| height > most) {
-                    best = Some((height, vertex));
-                }
-            }
-        }
-        best
-    };
-    let mut best = best_of(graph.seeds(), None);
-    for _ in 0..points.len() {
-        let Some((height, vertex)) = best else { break };
-        let next = best_of(graph.neighbors(vertex), best);
-        if next.is_none_or(|(most, _)| most <= height) {
-            break;
-        }
-        best = next;
-    }
-    match best.and_then(|(_, vertex)| points.get(usize::from(vertex))) {
-        Some(p) => Some(p),
-        None => farthest3::<T, FAR>(points, u),
-    }
-}
-
 // ---------------------------------------------------------------------------------------------------------- callbacks
 
 pub type SupportFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T, point: *mut T) -> i32;
 pub type ValueFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T) -> T;
 
-/// A set of the caller, as a [`Support`].
-pub struct CallbackSet<T> {
-    support: SupportFn<T>,
-    exhaustive: Option<SupportFn<T>>,
+/// Asks a support function of the caller.
+///
+/// # Safety
+/// The function may be called with `user`, a direction and room for a point of dimension `N`.
+#[inline(always)]
+pub unsafe fn ask<T: Real, const N: usize>(
+    function: Option<SupportFn<T>>,
     user: *mut c_void,
-    radius: T,
-    extent: T,
-    error: T,
-}
-
-impl<T: Real> CallbackSet<T> {
-    /// Checks the numbers: `lengths` are radius, extent and error; `n` is the dimension that the set says, 0 for any.
-    ///
-    /// # Safety
-    /// For the life of the value, the functions may be called with `user`, a direction and room for a point of dimension
-    /// `N`.
-    #[inline(always)]
-    pub unsafe fn new<const N: usize>(
-        support: Option<SupportFn<T>>,
-        exhaustive: Option<SupportFn<T>>,
-        user: *mut c_void,
-        lengths: [T; 3],
-        n: u32,
-    ) -> Check<Self> {
-        let support = support.ok_or(QDIST_ERROR_NULL)?;
-        let [radius, extent, error] = lengths;
-        let (radius, extent, error) = (length(radius)?, length(extent)?, length(error)?);
-        if n != 0 && n as usize != N {
-            return Err(QDIST_ERROR_DIMENSION);
-        }
-        Ok(Self { support, exhaustive, user, radius, extent, error })
-    }
-
-    #[inline(always)]
-    fn ask<const N: usize>(&self, function: SupportFn<T>, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        // A coordinate that the callback does not write stays NaN, and the query ends with that.
-        let mut point = Vector::<T, N>::from_element(T::of(f64::NAN));
-        // SAFETY: the promise of `new`; both vectors are N numbers in a row.
-        let code = unsafe { function(self.user, u.as_ptr(), point.as_mut_ptr()) };
-        if code == 0 { Ok(point) } else { Err(Failure(code)) }
-    }
-}
-
-impl<T: Real, const N: usize> Support<T, N> for CallbackSet<T> {
-    #[inline]
-    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        self.ask(self.support, u)
-    }
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        self.ask(self.exhaustive.unwrap_or(self.support), u)
-    }
-    fn has_shortcuts(&self) -> bool {
-        self.exhaustive.is_some()
-    }
-    fn radius(&self) -> T {
-        self.radius
-    }
-    fn extent(&self) -> T {
-        self.extent
-    }
-    fn error(&self) -> T {
-        if self.error > T::zero() { self.error } else { T::count(16 * N) * T::ROUNDOFF * self.extent }
-    }
-}
-
-/// A set of the caller in space, with what helps to place it.
-pub struct CallbackShape<T: Real> {
-    pub set: CallbackSet<T>,
-    pub center: Option<(Vector<T, 3>, T)>,
-    pub symmetry: Symmetry,
-}
-
-impl<T: Real> Support<T, 3> for CallbackShape<T> {
-    #[inline]
-    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        self.set.support(u)
-    }
-    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        self.set.exhaustive(u)
-    }
-    fn has_shortcuts(&self) -> bool {
-        self.set.exhaustive.is_some()
-    }
-    fn radius(&self) -> T {
-        self.set.radius
-    }
-    fn extent(&self) -> T {
-        self.set.extent
-    }
-    fn center(&self) -> Option<(Vector<T, 3>, T)> {
-        self.center
-    }
-    fn symmetry(&self) -> Symmetry {
-        self.symmetry
-    }
-    fn error(&self) -> T {
-        Support::<T, 3>::error(&self.set)
-    }
+    u: &Vector<T, N>,
+) -> Result<Vector<T, N>, Failure> {
+    let function = function.ok_or(Failure(QDIST_ERROR_NULL))?;
+    // A coordinate that the callback does not write stays NaN, and the query ends with that.
+    let mut point = Vector::<T, N>::from_element(T::of(f64::NAN));
+    // SAFETY: the caller's promise; both vectors are N numbers in a row.
+    let code = unsafe { function(user, u.as_ptr(), point.as_mut_ptr()) };
+    if code == 0 { Ok(one_by_one(&point)) } else { Err(Failure(code)) }
 }
 
 /// A gauge of the caller, as a [`Gauge`].

@@ -32,9 +32,9 @@ mod solids;
 pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
-pub use hull::{Hull, Points};
 #[cfg(feature = "capi")]
 pub(crate) use hull::List;
+pub use hull::{Hull, Points};
 pub(crate) use load::one_by_one;
 #[cfg(feature = "capi")]
 pub(crate) use shapes::near_unit;

@@ -6,7 +6,8 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// How far an oracle's value may be off, relative to the coordinates that went into it: many thousand roundings of 1e-32.
+/// How far an oracle's value may be off, relative to the coordinates that went into it: many thousand roundings
+/// of 1e-32.
 pub const BLUR: f64 = 1e-26;
 
 /// hi + lo with |lo| <= ulp(hi)/2.

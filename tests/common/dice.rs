@@ -72,7 +72,8 @@ impl Dice {
         }
     }
 
-    /// A random orthonormal matrix, row by row (Gram-Schmidt twice: orthonormal to rounding); of determinant 1 for N = 3.
+    /// A random orthonormal matrix, row by row (Gram-Schmidt twice: orthonormal to rounding); of determinant 1
+    /// for N = 3.
     pub fn rotation<const N: usize>(&mut self) -> [[f64; N]; N] {
         let mut m = [[0.0; N]; N];
         for i in 0..N {

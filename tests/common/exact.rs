@@ -65,8 +65,8 @@ fn rough(a: &BodyText, b: &BodyText, u: &[f64; 3]) -> f64 {
     value(a, 1.0) + value(b, -1.0) + apart
 }
 
-/// An upper bound of the depth by search: random directions and `first`, the best refined by shrinking random steps; each
-/// value is exact, whatever the search misses.
+/// An upper bound of the depth by search: random directions and `first`, the best refined by shrinking random
+/// steps; each value is exact, whatever the search misses.
 pub fn searched_upper(a: &BodyText, b: &BodyText, first: Option<[f64; 3]>, tries: usize, dice: &mut Dice) -> Dd {
     let mut best = (f64::MAX, [1.0, 0.0, 0.0]);
     let axes = (0..3).flat_map(|i| {

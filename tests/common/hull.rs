@@ -1,10 +1,10 @@
 //! Exact signed depth of two convex polytopes in space, by brute force over features, in double-double.
 //!
-//! The Minkowski difference M = A - B has three kinds of facet normals: face normals of A, face normals of B (negated),
-//! and cross products of an edge of A and an edge of B. Where the origin is inside M, the depth is the least of h_M(u)/|u|
-//! over these. *Any* u gives an upper bound of the depth, so candidates that are no facets of M do no harm, and
-//! it is enough that none is missing. Where the origin is not inside, the distance is that of the closest pair of
-//! features, found the same way: superfluous pairs do no harm either.
+//! The Minkowski difference M = A - B has three kinds of facet normals: face normals of A, face normals of B
+//! (negated), and cross products of an edge of A and an edge of B. Where the origin is inside M, the depth is the
+//! least of h_M(u)/|u| over these. *Any* u gives an upper bound of the depth, so candidates that are no facets of
+//! M do no harm, and it is enough that none is missing. Where the origin is not inside, the distance is that of
+//! the closest pair of features, found the same way: superfluous pairs do no harm either.
 
 use super::dd::{Dd, V3, cross, dot, norm, scale, sub};
 
@@ -111,8 +111,8 @@ struct Least<'a> {
 }
 
 impl Least<'_> {
-    /// Tries u and -u, u being a cross product of vectors whose lengths multiply to `scale_of_u`, and `rough` its value in `f64`;
-    /// a look in `f64` drops what cannot matter.
+    /// Tries u and -u, u being a cross product of vectors whose lengths multiply to `scale_of_u`, and `rough` its
+    /// value in `f64`; a look in `f64` drops what cannot matter.
     fn try_both(&mut self, u: impl Fn() -> V3, scale_of_u: f64, rough: &[f64; 3]) {
         let blur = 1e-14 * scale_of_u / dot64(rough, rough).sqrt();
         let length = dot64(rough, rough).sqrt();
@@ -257,8 +257,10 @@ fn lines(p: &V3, e: &V3, q: &V3, f: &V3) -> Option<Dd> {
     }
     let (s, r) = ((we * ff - wf * ef) / det, (we * ef - wf * ee) / det);
     if inside(s) && inside(r) {
-        let d = sub(&super::dd::add(&w, &scale(f, r)), &scale(e, s));
-        return Some(dot(&d, &d));
+        // Along the common perpendicular: for lines that are almost parallel, s and r themselves are inaccurate.
+        let n = cross(e, f);
+        let along = dot(&w, &n);
+        return Some(along * along / dot(&n, &n));
     }
     None
 }

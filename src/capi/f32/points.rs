@@ -5,8 +5,7 @@
 //! climbing from vertex to vertex. The lists must outlive the set or body that is made of them.
 
 use super::super::generic::{
-    MAX_DIMENSION, aligned, array, climb, coordinates, dimension, farthest, farthest3, in_range, in_space, reach,
-    shared,
+    MAX_DIMENSION, aligned, array, coordinates, dimension, farthest, in_range, in_space, reach, shared, tiny,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
@@ -14,7 +13,7 @@ use super::super::status::{
 };
 use super::sets::{arguments, qdist_body_f32, qdist_set_f32, qdist_support_f32, room};
 use crate::scalar::Real;
-use crate::support::{HullGraph, Points, Support, graph_len};
+use crate::support::{HullGraph, List, Points, Support, graph_len, near_unit, one_by_one};
 use core::ffi::c_void;
 
 /// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
@@ -178,14 +177,14 @@ pub unsafe extern "C" fn qdist_points3_far_support_f32(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_hull_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { walk::<false>(user, direction, point) })
+    status(unsafe { climb::<false>(user, direction, point) })
 }
 
 /// The same, more accurate where all points are far from the origin compared with their spread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_hull_far_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { walk::<true>(user, direction, point) })
+    status(unsafe { climb::<true>(user, direction, point) })
 }
 
 impl qdist_points_f32 {
@@ -209,6 +208,16 @@ impl qdist_points_f32 {
         }
         // SAFETY: the caller's promise.
         Ok(in_space(unsafe { self.coordinates() }?))
+    }
+
+    /// The points in space, to be searched.
+    ///
+    /// # Safety
+    /// As for [`coordinates`](Self::coordinates).
+    #[inline(always)]
+    unsafe fn list<'a>(&self) -> Check<List<'a, f32, 3>> {
+        // SAFETY: the caller's promise.
+        List::new(unsafe { self.in_space() }?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
@@ -246,14 +255,14 @@ unsafe fn fill(
         exhaustive: if center.is_some() { exhaustive_far } else { exhaustive_near },
         user: user.cast_mut(),
         radius: 0.0,
-        extent: all.extent().at_least(super::super::generic::tiny()),
-        error: all.error().at_least(super::super::generic::tiny()),
+        extent: all.extent().at_least(tiny()),
+        error: all.error().at_least(tiny()),
         dimension: 3,
     };
     let mut made = qdist_body_f32::at_origin(set);
     if let Some((center, spread)) = center {
         made.center = center.into();
-        made.spread = spread.at_least(super::super::generic::tiny());
+        made.spread = spread.at_least(tiny());
     }
     // SAFETY: checked.
     unsafe { body.write(made) };
@@ -267,29 +276,23 @@ unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f32, point:
     // SAFETY: the caller's promise.
     let (list, u, room) = unsafe {
         let (points, u, room) = arguments::<qdist_points_f32>(user, direction, point)?;
-        (points.in_space()?, u, room)
+        (points.list()?, u, room)
     };
-    let mut store = [0.0; MAX_DIMENSION];
-    let u = in_range(u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
-    let best = farthest3::<f32, FAR>(list, u).ok_or(QDIST_ERROR_ARGUMENT)?;
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*best) };
+    unsafe { room.write(*list.scan::<FAR>(&near_unit(&one_by_one(u)))) };
     Ok(())
 }
 
 /// # Safety
 /// Those of a support function.
 #[inline(always)]
-unsafe fn walk<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+unsafe fn climb<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
     // SAFETY: the caller's promise.
     let (list, graph, u, room) = unsafe {
         let (hull, u, room) = arguments::<qdist_hull_f32>(user, direction, point)?;
-        (hull.points.in_space()?, hull.graph()?, u, room)
+        (hull.points.list()?, hull.graph()?, u, room)
     };
-    let mut store = [0.0; MAX_DIMENSION];
-    let u = in_range(u, &mut store).first_chunk::<3>().ok_or(QDIST_ERROR_DIMENSION)?;
-    let best = climb::<f32, FAR>(list, &graph, u).ok_or(QDIST_ERROR_ARGUMENT)?;
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*best) };
+    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(&one_by_one(u)))) };
     Ok(())
 }

@@ -150,8 +150,8 @@ pub unsafe extern "C" fn qdist_depth3_f32(
             (solver, a, b, convert::<3>(options)?)
         };
         // SAFETY: what the header asks of the caller.
-        let (shape_a, shape_b) = unsafe { (a.adapt()?, b.adapt()?) };
-        let depth = solver.depth(&a.place(&shape_a)?, &b.place(&shape_b)?, &options);
+        let (a, b) = unsafe { (a.checked()?, b.checked()?) };
+        let depth = solver.depth(&a.place()?, &b.place()?, &options);
         // SAFETY: checked.
         unsafe { result.write(from_depth(&depth)) };
         conclude(depth.outcome)
@@ -323,12 +323,12 @@ unsafe fn solve<const N: usize>(
         let a = shared(a)?;
         let solver = handle::open::<f32, N>(solver)?;
         known_size((&raw const (*result).struct_size).read(), size_of::<qdist_result_f32>())?;
-        (solver, a.adapt::<N>()?, convert::<N>(options)?)
+        (solver, a.checked::<N>()?, convert::<N>(options)?)
     };
     // SAFETY: the caller's promise.
     let answer = match unsafe { gauge::<N>(q) }? {
-        Either::Ball(ball) => solver.solve(&a, &ball, &options),
-        Either::Other(gauge) => solver.solve(&a, &gauge, &options),
+        Either::Ball(ball) => solver.solve(a, &ball, &options),
+        Either::Other(gauge) => solver.solve(a, &gauge, &options),
     };
     // SAFETY: checked.
     unsafe { result.write(from_answer(&answer)) };

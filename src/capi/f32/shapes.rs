@@ -65,56 +65,35 @@ pub struct qdist_cone_f32 {
 /// A struct of this file as the set that it stands for.
 trait Shape {
     type Set: Support<f32, 3>;
+    /// Checks the sizes.
     fn set(&self) -> Result<Self::Set, ShapeError>;
+    /// Trusts them.
+    fn trusted(&self) -> Self::Set;
 }
 
-impl Shape for qdist_sphere_f32 {
-    type Set = Sphere<f32, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Sphere::new(self.radius)
-    }
+macro_rules! shape {
+    ($struct:ty, $set:ty, |$s:ident| $($size:expr),+) => {
+        impl Shape for $struct {
+            type Set = $set;
+            fn set(&self) -> Result<Self::Set, ShapeError> {
+                let $s = self;
+                <$set>::new($($size),+)
+            }
+            #[inline(always)]
+            fn trusted(&self) -> Self::Set {
+                let $s = self;
+                <$set>::trusted($($size),+)
+            }
+        }
+    };
 }
 
-impl Shape for qdist_box_f32 {
-    type Set = BoxShape<f32, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        BoxShape::new(Vector::from(self.half))
-    }
-}
-
-impl Shape for qdist_ellipsoid_f32 {
-    type Set = Ellipsoid<f32, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Ellipsoid::new(Vector::from(self.semi_axes))
-    }
-}
-
-impl Shape for qdist_cylinder_f32 {
-    type Set = Cylinder<f32>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Cylinder::new(self.radius, self.half_height)
-    }
-}
-
-impl Shape for qdist_capsule_f32 {
-    type Set = Capsule<f32>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Capsule::new(self.radius, self.half_height)
-    }
-}
-
-impl Shape for qdist_cone_f32 {
-    type Set = Cone<f32>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Cone::new(self.radius, self.half_height)
-    }
-}
+shape!(qdist_sphere_f32, Sphere<f32, 3>, |s| s.radius);
+shape!(qdist_box_f32, BoxShape<f32, 3>, |s| Vector::from(s.half));
+shape!(qdist_ellipsoid_f32, Ellipsoid<f32, 3>, |s| Vector::from(s.semi_axes));
+shape!(qdist_cylinder_f32, Cylinder<f32>, |s| s.radius, s.half_height);
+shape!(qdist_capsule_f32, Capsule<f32>, |s| s.radius, s.half_height);
+shape!(qdist_cone_f32, Cone<f32>, |s| s.radius, s.half_height);
 
 /// Fills a body with a shape.
 ///
@@ -129,6 +108,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         Symmetry::Axis => QDIST_SYMMETRY_AXIS,
         Symmetry::Full => QDIST_SYMMETRY_FULL,
     };
+    let rolling_radius = set.rolling_radius();
     let set = qdist_set_f32 {
         support,
         exhaustive: None,
@@ -139,22 +119,21 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f32 { symmetry, ..qdist_body_f32::at_origin(set) }) };
+    unsafe { body.write(qdist_body_f32 { symmetry, rolling_radius, ..qdist_body_f32::at_origin(set) }) };
     Ok(())
 }
 
-/// Asks a shape. Checks it again: a shape that has been spoiled since ends the query with a code that says so.
+/// Asks a shape. Its sizes were checked when the body was made.
 ///
 /// # Safety
 /// Those of [`arguments`].
 #[inline(always)]
 unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
     // SAFETY: the caller's promise.
-    let (shape, &[x, y, z], room) = unsafe { arguments::<S>(user, direction, point) }?;
-    let set = shape.set().map_err(from_shape)?;
-    let farthest = set.support(&Vector::<f32, 3>::new(x, y, z)).map_err(|failure| failure.0)?;
+    let (shape, u, room) = unsafe { arguments::<S>(user, direction, point) }?;
+    let farthest = shape.trusted().support(u).map_err(|failure| failure.0)?;
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write([farthest.x, farthest.y, farthest.z]) };
+    unsafe { room.write(farthest.into()) };
     Ok(())
 }
 

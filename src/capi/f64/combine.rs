@@ -70,7 +70,7 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
         let stretch = norm(matrix);
         let reach =
             if inner.extent > 0.0 { length(stretch * (inner.extent + inner.radius) + norm(shift))? } else { 0.0 };
-        let own = error(inner, linear.columns as usize);
+        let own = inner.stated_error(linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f64 as SupportFn<f64>);
         let made = qdist_set_f64 {
             support: Some(qdist_linear_support_f64),
@@ -163,11 +163,6 @@ unsafe fn part<'a>(set: *const qdist_set_f64, n: usize) -> Check<&'a qdist_set_f
     if set.dimension != 0 && set.dimension as usize != n { Err(QDIST_ERROR_DIMENSION) } else { Ok(set) }
 }
 
-/// The rounding error that a set states.
-fn error(set: &qdist_set_f64, n: usize) -> f64 {
-    if set.error > 0.0 { set.error } else { f64::count(16 * n) * f64::ROUNDOFF * set.extent }
-}
-
 fn norm(v: &[f64]) -> f64 {
     dot(v, v).root() * 1.000001
 }
@@ -195,7 +190,7 @@ unsafe fn fill_pair(
         user: pair.cast_mut().cast(),
         radius: a.radius + b.radius,
         extent,
-        error: ((error(a, n) + error(b, n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
+        error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
         dimension: n as u32,
     };
     // SAFETY: checked.

@@ -5,13 +5,15 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{CallbackSet, CallbackShape, aligned, coordinates, length, shared};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, from_body, qdist_status, status};
+use super::super::generic::{aligned, ask, coordinates, lengths, shared};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, from_body, qdist_status, status,
+};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use crate::Body;
 use crate::depth::Matrix3;
-use crate::scalar::Vector;
-use crate::support::Symmetry;
+use crate::scalar::{Real, Vector};
+use crate::support::{Failure, Support, Symmetry};
 use core::ffi::c_void;
 
 /// Writes a point of the core that is farthest along `direction` to `point`.
@@ -60,6 +62,9 @@ pub struct qdist_body_f64 {
     pub translation: [f64; 3],
     /// For a set far from the origin of its frame: a point near it. Used when `spread` is above 0.
     pub center: [f64; 3],
+    /// The part of set.radius that is not a ball by itself but was split off a rounded shape, as the body functions of ellipsoids
+    /// do; 0 to set.radius. Where `rotation` is a rotation only roughly, it does not leave this part a ball.
+    pub rolling_radius: f64,
     /// An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
     /// to `center`. 0: measured from the origin.
     pub spread: f64,
@@ -69,13 +74,56 @@ pub struct qdist_body_f64 {
 }
 
 impl qdist_set_f64 {
+    /// Checks the numbers for dimension `N`.
+    ///
     /// # Safety
-    /// The functions may be called with `user` in dimension `N`, as the header states.
+    /// For the life of the reference the functions may be called with `user` in dimension `N`, as the header states.
     #[inline(always)]
-    pub(super) unsafe fn adapt<const N: usize>(&self) -> Check<CallbackSet<f64>> {
-        let lengths = [self.radius, self.extent, self.error];
-        // SAFETY: the caller's promise.
-        unsafe { CallbackSet::new::<N>(self.support, self.exhaustive, self.user, lengths, self.dimension) }
+    pub(super) unsafe fn checked<const N: usize>(&self) -> Check<&CheckedSet> {
+        if self.support.is_none() {
+            return Err(QDIST_ERROR_NULL);
+        }
+        lengths([self.radius, self.extent, self.error])?;
+        if self.dimension != 0 && self.dimension as usize != N {
+            return Err(QDIST_ERROR_DIMENSION);
+        }
+        // SAFETY: transparent.
+        Ok(unsafe { &*core::ptr::from_ref(self).cast() })
+    }
+}
+
+/// A set that has passed the checks, where it lies, as a [`Support`].
+#[repr(transparent)]
+pub(super) struct CheckedSet(qdist_set_f64);
+
+impl<const N: usize> Support<f64, N> for CheckedSet {
+    #[inline]
+    fn support(&self, u: &Vector<f64, N>) -> Result<Vector<f64, N>, Failure> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask(self.0.support, self.0.user, u) }
+    }
+    fn exhaustive(&self, u: &Vector<f64, N>) -> Result<Vector<f64, N>, Failure> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.0.exhaustive.is_some()
+    }
+    fn radius(&self) -> f64 {
+        self.0.radius
+    }
+    fn extent(&self) -> f64 {
+        self.0.extent
+    }
+    fn error(&self) -> f64 {
+        self.0.stated_error(N)
+    }
+}
+
+impl qdist_set_f64 {
+    /// The rounding error that the set states, in words or by default.
+    pub(super) fn stated_error(&self, n: usize) -> f64 {
+        if self.error > 0.0 { self.error } else { f64::count(16 * n) * f64::ROUNDOFF * self.extent }
     }
 }
 
@@ -83,36 +131,85 @@ impl qdist_body_f64 {
     /// The identity pose.
     pub(super) fn at_origin(set: qdist_set_f64) -> Self {
         let rotation = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-        Self { set, rotation, translation: [0.0; 3], center: [0.0; 3], spread: 0.0, symmetry: QDIST_SYMMETRY_NONE }
+        Self {
+            set,
+            rotation,
+            translation: [0.0; 3],
+            center: [0.0; 3],
+            rolling_radius: 0.0,
+            spread: 0.0,
+            symmetry: QDIST_SYMMETRY_NONE,
+        }
     }
 
+    /// Checks the numbers, except for the pose, which [`place`](Self::place) does.
+    ///
     /// # Safety
-    /// As for [`qdist_set_f64::adapt`], in dimension 3.
+    /// As for [`qdist_set_f64::checked`], in dimension 3.
     #[inline(always)]
-    pub(super) unsafe fn adapt(&self) -> Check<CallbackShape<f64>> {
+    pub(super) unsafe fn checked(&self) -> Check<&CheckedBody> {
         // SAFETY: the caller's promise.
-        let set = unsafe { self.set.adapt::<3>() }?;
-        let spread = length(self.spread)?;
-        let center = if spread > 0.0 {
+        unsafe { self.set.checked::<3>() }?;
+        lengths([self.spread, self.rolling_radius])?;
+        if self.spread > 0.0 {
             coordinates(&self.center)?;
-            Some((Vector::from(self.center), spread))
-        } else {
-            None
-        };
-        let symmetry = match self.symmetry {
-            QDIST_SYMMETRY_NONE => Symmetry::None,
+        }
+        if self.rolling_radius > self.set.radius || self.symmetry > QDIST_SYMMETRY_FULL {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        // SAFETY: transparent.
+        Ok(unsafe { &*core::ptr::from_ref(self).cast() })
+    }
+}
+
+/// A body that has passed the checks, where it lies, as a [`Support`] in its own frame.
+#[repr(transparent)]
+pub(super) struct CheckedBody(qdist_body_f64);
+
+impl CheckedBody {
+    /// The body in its pose.
+    #[inline(always)]
+    pub(super) fn place(&self) -> Check<Body<'_, f64>> {
+        let [a, b, c, d, e, f, g, h, i] = self.0.rotation;
+        let rotation = Matrix3::new(a, b, c, d, e, f, g, h, i);
+        Body::new(self, rotation, Vector::from(self.0.translation)).map_err(from_body)
+    }
+}
+
+impl Support<f64, 3> for CheckedBody {
+    #[inline]
+    fn support(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask(self.0.set.support, self.0.set.user, u) }
+    }
+    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.0.set.exhaustive.is_some()
+    }
+    fn radius(&self) -> f64 {
+        self.0.set.radius
+    }
+    fn rolling_radius(&self) -> f64 {
+        self.0.rolling_radius
+    }
+    fn extent(&self) -> f64 {
+        self.0.set.extent
+    }
+    fn center(&self) -> Option<(Vector<f64, 3>, f64)> {
+        (self.0.spread > 0.0).then(|| (Vector::from(self.0.center), self.0.spread))
+    }
+    fn symmetry(&self) -> Symmetry {
+        match self.0.symmetry {
             QDIST_SYMMETRY_AXIS => Symmetry::Axis,
             QDIST_SYMMETRY_FULL => Symmetry::Full,
-            _ => return Err(QDIST_ERROR_ARGUMENT),
-        };
-        Ok(CallbackShape { set, center, symmetry })
+            _ => Symmetry::None,
+        }
     }
-
-    #[inline(always)]
-    pub(super) fn place<'a>(&self, shape: &'a CallbackShape<f64>) -> Check<Body<'a, f64>> {
-        let [a, b, c, d, e, f, g, h, i] = self.rotation;
-        let rotation = Matrix3::new(a, b, c, d, e, f, g, h, i);
-        Body::new(shape, rotation, Vector::from(self.translation)).map_err(from_body)
+    fn error(&self) -> f64 {
+        self.0.set.stated_error(3)
     }
 }
 
@@ -125,7 +222,7 @@ pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *con
         // SAFETY: what the header asks of the caller.
         let set = unsafe { shared(set) }?;
         // SAFETY: what the header asks of the caller; the functions are not called here.
-        unsafe { set.adapt::<3>() }?;
+        unsafe { set.checked::<3>() }?;
         // SAFETY: checked.
         unsafe { body.write(qdist_body_f64::at_origin(*set)) };
         Ok(())
@@ -133,8 +230,7 @@ pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *con
     status(fill())
 }
 
-/// The parts of a support function's arguments, checked: the struct behind `user`, the direction, and room for the
-/// point. References only: a vector inside of the `Result` would be copied in pieces, which is slow.
+/// The arguments of a support function in space, checked: the struct behind `user`, the direction, and room for the point.
 ///
 /// # Safety
 /// Each pointer that is neither NULL nor misaligned is valid for a `S`, for three numbers, and for writes of three numbers.
@@ -143,8 +239,8 @@ pub(super) unsafe fn arguments<'a, S>(
     user: *mut c_void,
     direction: *const f64,
     point: *mut f64,
-) -> Check<(&'a S, &'a [f64; 3], *mut [f64; 3])> {
-    // SAFETY: the caller's promise.
+) -> Check<(&'a S, &'a Vector<f64, 3>, *mut [f64; 3])> {
+    // SAFETY: the caller's promise; a vector is its numbers in a row.
     unsafe { Ok((shared(user.cast::<S>().cast_const())?, shared(direction.cast())?, room(point)?)) }
 }
 

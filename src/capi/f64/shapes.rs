@@ -64,56 +64,35 @@ pub struct qdist_cone_f64 {
 /// A struct of this file as the set that it stands for.
 trait Shape {
     type Set: Support<f64, 3>;
+    /// Checks the sizes.
     fn set(&self) -> Result<Self::Set, ShapeError>;
+    /// Trusts them.
+    fn trusted(&self) -> Self::Set;
 }
 
-impl Shape for qdist_sphere_f64 {
-    type Set = Sphere<f64, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Sphere::new(self.radius)
-    }
+macro_rules! shape {
+    ($struct:ty, $set:ty, |$s:ident| $($size:expr),+) => {
+        impl Shape for $struct {
+            type Set = $set;
+            fn set(&self) -> Result<Self::Set, ShapeError> {
+                let $s = self;
+                <$set>::new($($size),+)
+            }
+            #[inline(always)]
+            fn trusted(&self) -> Self::Set {
+                let $s = self;
+                <$set>::trusted($($size),+)
+            }
+        }
+    };
 }
 
-impl Shape for qdist_box_f64 {
-    type Set = BoxShape<f64, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        BoxShape::new(Vector::from(self.half))
-    }
-}
-
-impl Shape for qdist_ellipsoid_f64 {
-    type Set = Ellipsoid<f64, 3>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Ellipsoid::new(Vector::from(self.semi_axes))
-    }
-}
-
-impl Shape for qdist_cylinder_f64 {
-    type Set = Cylinder<f64>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Cylinder::new(self.radius, self.half_height)
-    }
-}
-
-impl Shape for qdist_capsule_f64 {
-    type Set = Capsule<f64>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Capsule::new(self.radius, self.half_height)
-    }
-}
-
-impl Shape for qdist_cone_f64 {
-    type Set = Cone<f64>;
-    #[inline(always)]
-    fn set(&self) -> Result<Self::Set, ShapeError> {
-        Cone::new(self.radius, self.half_height)
-    }
-}
+shape!(qdist_sphere_f64, Sphere<f64, 3>, |s| s.radius);
+shape!(qdist_box_f64, BoxShape<f64, 3>, |s| Vector::from(s.half));
+shape!(qdist_ellipsoid_f64, Ellipsoid<f64, 3>, |s| Vector::from(s.semi_axes));
+shape!(qdist_cylinder_f64, Cylinder<f64>, |s| s.radius, s.half_height);
+shape!(qdist_capsule_f64, Capsule<f64>, |s| s.radius, s.half_height);
+shape!(qdist_cone_f64, Cone<f64>, |s| s.radius, s.half_height);
 
 /// Fills a body with a shape.
 ///
@@ -128,6 +107,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         Symmetry::Axis => QDIST_SYMMETRY_AXIS,
         Symmetry::Full => QDIST_SYMMETRY_FULL,
     };
+    let rolling_radius = set.rolling_radius();
     let set = qdist_set_f64 {
         support,
         exhaustive: None,
@@ -138,22 +118,21 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f64 { symmetry, ..qdist_body_f64::at_origin(set) }) };
+    unsafe { body.write(qdist_body_f64 { symmetry, rolling_radius, ..qdist_body_f64::at_origin(set) }) };
     Ok(())
 }
 
-/// Asks a shape. Checks it again: a shape that has been spoiled since ends the query with a code that says so.
+/// Asks a shape. Its sizes were checked when the body was made.
 ///
 /// # Safety
 /// Those of [`arguments`].
 #[inline(always)]
 unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
     // SAFETY: the caller's promise.
-    let (shape, &[x, y, z], room) = unsafe { arguments::<S>(user, direction, point) }?;
-    let set = shape.set().map_err(from_shape)?;
-    let farthest = set.support(&Vector::<f64, 3>::new(x, y, z)).map_err(|failure| failure.0)?;
+    let (shape, u, room) = unsafe { arguments::<S>(user, direction, point) }?;
+    let farthest = shape.trusted().support(u).map_err(|failure| failure.0)?;
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write([farthest.x, farthest.y, farthest.z]) };
+    unsafe { room.write(farthest.into()) };
     Ok(())
 }
 
