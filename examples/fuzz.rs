@@ -1,6 +1,6 @@
 //! Random problems of every kind, checked against what must hold whatever the problem is.
 //!
-//!     cargo run --release --example fuzz -- --seconds 60 [--seed 1] [--case 17] [--with thin,tiny,words]
+//!     cargo run --release --example fuzz -- --seconds 60 [--seed 1] [--case 17]
 //!
 //! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned,
 //! identical, touching or far away; all gauges in 2 to 6 dimensions; any capacity, tolerance, threshold and
@@ -13,9 +13,6 @@
 //!   its bracket;
 //! * pairs of small polytopes have the exact depth in their bracket;
 //! * it comes in time.
-//!
-//! `--with` includes what is known not to hold yet (the ignored tests in `tests/regressions.rs`): `thin` sets,
-//! `tiny` positions in f32, `words` of a set about its extent, error and radius that are no numbers.
 //!
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 
@@ -33,15 +30,8 @@ use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn,
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Options, Outcome, Real, Vector};
 use std::cell::Cell;
-use std::sync::{Mutex, OnceLock};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
-
-/// What is known not to hold yet and is included all the same.
-static WITH: OnceLock<String> = OnceLock::new();
-
-fn with(what: &str) -> bool {
-    WITH.get().is_some_and(|list| list.split(',').any(|x| x == what))
-}
 
 /// The problem in work, for the panic hook and the watchdog.
 static CURRENT: Mutex<(String, Option<Instant>)> = Mutex::new((String::new(), None));
@@ -67,7 +57,6 @@ fn main() {
         match arg.as_str() {
             "--seconds" => seconds = value.parse().expect("seconds"),
             "--seed" => seed = value.parse().expect("seed"),
-            "--with" => WITH.set(value).expect("--with once"),
             "--case" => only = Some(value.parse::<u64>().expect("case")),
             _ => panic!("unknown argument {arg}"),
         }
@@ -176,8 +165,7 @@ fn random_capacity<const N: usize>(dice: &mut Dice) -> (usize, usize) {
 fn random_size(dice: &mut Dice) -> f64 {
     match dice.below(10) {
         0 => 0.0,
-        // Thin sets fold the surface, now and then.
-        1 => dice.decade(if with("thin") { -9.0 } else { -3.0 }, 0.0),
+        1 => dice.decade(-9.0, 0.0),
         2 => 1.0,
         3 => (1 + dice.below(8)) as f64 / 4.0,
         _ => dice.range(0.1, 2.0),
@@ -395,22 +383,6 @@ fn fuzz_pair(dice: &mut Dice) {
     if single {
         (a, b) = (rounded::<f32>(&a), rounded::<f32>(&b));
     }
-    if !with("tiny") {
-        // Positions whose squares underflow in f32.
-        for body in [&mut a, &mut b] {
-            body.rotation = body.rotation.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
-            body.translation = body.translation.map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
-        }
-    }
-    // Thin differences in f32: bodies of very different sizes, plates, needles.
-    let sizes = |x: &BodyText| {
-        let n = x.shape.numbers.iter().map(|x| x.abs());
-        (n.clone().fold(0.0, f64::max), n.filter(|&x| x > 0.0).fold(f64::MAX, f64::min))
-    };
-    let ((large_a, small_a), (large_b, small_b)) = (sizes(&a), sizes(&b));
-    let points =
-        a.shape.kind == "hull" && b.shape.kind == "hull" && a.shape.numbers.len().max(b.shape.numbers.len()) <= 9;
-    let thin = large_a.max(large_b) > 1e2 * small_a.min(small_b) || points && !with("tiny");
     // Once as it is, once moved to where it barely touches.
     for pass in 0..2 {
         let place = CURRENT.lock().unwrap().0.clone();
@@ -419,7 +391,7 @@ fn fuzz_pair(dice: &mut Dice) {
         let mut ledger = Ledger::new();
         let mut known = None;
         let found = run_pair::<f64>(&a, &b, dice, 4, &mut ledger, &mut known);
-        if single && (with("thin") || !thin) {
+        if single {
             run_pair::<f32>(&a, &b, dice, 3, &mut ledger, &mut known);
         }
         let size = reach(&a) + reach(&b);
@@ -434,9 +406,6 @@ fn fuzz_pair(dice: &mut Dice) {
         let target = size * dice.pick(&[0.0, 1e-15, -1e-15, 1e-9, -1e-9]);
         for i in 0..3 {
             b.translation[i] += (depth - target) * n[i];
-            if !with("tiny") && b.translation[i].abs() < 1e-15 {
-                b.translation[i] = 0.0;
-            }
         }
         if single {
             b = rounded::<f32>(&b);
@@ -863,7 +832,7 @@ impl<T: Real, const N: usize> Support<T, N> for Faulty<T, N> {
 fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
     let odd = |dice: &mut Dice, usual: f64| {
         let odd = dice.pick(&[0.0, 1e-30, 1e30, f64::NAN, f64::INFINITY, -1.0]);
-        if dice.chance(0.8) || !with("words") && !odd.is_finite() { usual } else { odd }
+        if dice.chance(0.8) { usual } else { odd }
     };
     let set = Faulty::<T, N> {
         half: Vector::from(std::array::from_fn(|_| T::of(random_size(dice)))),

@@ -58,7 +58,7 @@
 //!    solver                     Algorithm 1
 //!     query                     one query's state: best upper bound, bracket, answer
 //!      polytope  distance       facets, adjacency, queue; nearest point
-//!       simplex  bounds  answer   small simplices; what certifies the bracket; outcomes
+//!       start  simplex  bounds  answer   first and small simplices; what certifies the bracket; outcomes
 //!        support  qset          the sets A and Q
 //!         workspace  scalar     memory; f32 and f64
 //! ```
@@ -106,6 +106,7 @@ mod query;
 pub mod scalar;
 pub mod simplex;
 pub mod solver;
+mod start;
 pub mod support;
 pub mod workspace;
 

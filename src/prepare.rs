@@ -6,8 +6,9 @@
 
 use crate::polytope::{Index, Insertion, Polytope};
 use crate::scalar::{Real, Vector};
-use crate::simplex::{Start, Vertex};
+use crate::simplex::Vertex;
 use crate::solver::Solver;
+use crate::start::Start;
 use crate::support::{BLOCK, EMPTY, GraphWriter, HullGraph, Points, SEEDS, ShapeError, Support};
 
 /// Why a hull cannot be prepared.

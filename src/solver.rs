@@ -7,7 +7,8 @@ use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Start, Vertex};
+use crate::simplex::{Simplex, Vertex};
+use crate::start::Start;
 use crate::support::{Failure, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or

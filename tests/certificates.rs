@@ -1,11 +1,9 @@
 //! Every answer carries its proof; here each proof is checked without the crate's arithmetic.
 //!
 //! * The reported direction is a unit vector, and the textbook support functions of A and Q along it (in
-//!   double-double) prove
-//!   the upper bound.
+//!   double-double) prove the upper bound.
 //! * The witness simplex is made of points of A with weights that are a convex combination; for the ball its
-//!   point is as far
-//!   from the origin as the lower bound says.
+//!   point is as far from the origin as the lower bound says.
 //! * No direction anywhere proves less than the lower bound: a search over directions stays above it.
 //! * The witness points of a pair lie on the bodies, and their difference is depth * normal.
 
