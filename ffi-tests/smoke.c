@@ -52,7 +52,7 @@ static Q(depth) Q(ask)(qdist_solver *solver, const Q(body) *a, const Q(body) *b,
 
 /* Does the bracket contain d, and is it narrow? Near 0, rounding decides. */
 static int Q(brackets)(double lower, double upper, double d) {
-    return lower <= d && d <= upper && upper - lower <= 5 * WIDTH * fabs(d) + 0.05 * WIDTH;
+    return lower <= d && d <= upper && upper - lower <= 2 * WIDTH * fabs(d) + 0.05 * WIDTH;
 }
 
 /* Are the witness points depth * normal apart, and is the normal of unit length? */
@@ -178,6 +178,7 @@ static void Q(limits)(qdist_solver *solver) {
     memcpy(options.guess, depth.normal, sizeof depth.normal);
     depth = Q(ask)(solver, &a, &b, &options);
     CHECK(depth.outcome == QDIST_CONVERGED && depth.upper >= 1 && depth.upper - depth.lower <= WIDTH * depth.upper);
+    CHECK(Q(consistent)(&depth, 1));
 }
 
 /* A regular hexagonal prism of radius 1 and height 2: a shape that the library does not know. Counts its calls. */

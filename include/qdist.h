@@ -301,6 +301,9 @@ typedef struct {
     double translation[3];
     // For a set far from the origin of its frame: a point near it. Used when `spread` is above 0.
     double center[3];
+    // The part of set.radius that is not a ball by itself but was split off a rounded shape, as the body functions of ellipsoids
+    // do; 0 to set.radius. Where `rotation` is a rotation only roughly, it does not leave this part a ball.
+    double rolling_radius;
     // An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
     // to `center`. 0: measured from the origin.
     double spread;
@@ -783,6 +786,7 @@ typedef struct {
     float rotation[9];
     float translation[3];
     float center[3];
+    float rolling_radius;
     float spread;
     uint32_t symmetry;
 } qdist_body_f32;

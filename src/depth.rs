@@ -278,7 +278,7 @@ pub struct Depth<T> {
     /// Witness on A, world frame.
     pub point_a: Vector<T, 3>,
     /// Witness on B, world frame. Where converged, `point_a - point_b` is depth * normal: in length up to the tolerance, sideways up
-    /// to its square root. The points that touch after B is moved, or the nearest points of separated bodies.
+    /// to a few times its square root. The points that touch after B is moved, or the nearest points of separated bodies.
     pub point_b: Vector<T, 3>,
     /// Affine dimension of the cores' difference, as far as it was found out.
     pub dimension: usize,

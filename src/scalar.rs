@@ -102,6 +102,17 @@ pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
     if squared > T::SAFE_SQUARE { squared.root() } else { small_norm(v) }
 }
 
+/// v / |v| for v not zero, also where squares underflow.
+pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
+    let squared = v.dot(v);
+    if squared > T::SAFE_SQUARE {
+        return v * (T::one() / squared.root());
+    }
+    let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+    let scaled = v.map(|x| x / largest);
+    scaled * (T::one() / scaled.dot(&scaled).root())
+}
+
 #[cold]
 #[inline(never)]
 fn small_norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {

@@ -3,7 +3,7 @@
 //! It rests on Gram-Schmidt over at most N edges, with no matrix to invert and nothing to pivot on that could vanish
 //! unnoticed.
 
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, Vector, norm, unit};
 use heapless::Vec;
 
 /// The most vertices that a simplex in R^N can have here, N + 1 <= 7.
@@ -153,7 +153,7 @@ impl<T: Real, const N: usize> Simplex<T, N> {
     /// The point is known to a roundoff of the vertices' norms, so close to the origin its direction is not. But the
     /// direction is orthogonal to the simplex, whose edges are long: what cancellation left along them is taken out.
     pub(crate) fn towards_origin(&self, distance: T, reach: T) -> Vector<T, N> {
-        let rough = self.point() * (-T::one() / distance);
+        let rough = -unit(&self.point());
         let Some((first, rest)) = self.corners.split_first() else { return rough };
         if rest.is_empty() || distance > reach * T::of(1e-2) {
             return rough;

@@ -250,7 +250,7 @@ fn boxes_nearly_parallel() {
 #[test]
 fn points_that_are_equal_collinear_or_coplanar() {
     family("degenerate", 7, 80, |dice| {
-        let mut mixed = |dice: &mut Dice| {
+        let mixed = |dice: &mut Dice| {
             let mut points = cloud(dice, 4, 8);
             for _ in 0..6 {
                 let (p, q, r) = (dice.pick(&points), dice.pick(&points), dice.pick(&points));
@@ -273,7 +273,7 @@ fn points_that_are_equal_collinear_or_coplanar() {
 #[test]
 fn grid_points_with_many_coplanar_faces() {
     family("grid", 8, 60, |dice| {
-        let mut grid = |dice: &mut Dice| {
+        let grid = |dice: &mut Dice| {
             let n = 4 + dice.below(10);
             (0..n).map(|_| std::array::from_fn(|_| dice.below(3) as f64 - 1.0)).collect::<Vec<[f64; 3]>>()
         };
@@ -286,7 +286,7 @@ fn grid_points_with_many_coplanar_faces() {
 #[test]
 fn polygons_segments_and_points() {
     family("flat", 9, 100, |dice| {
-        let mut flat = |dice: &mut Dice| {
+        let flat = |dice: &mut Dice| {
             let mut points = cloud(dice, 3, 8);
             match dice.below(4) {
                 0 => points.truncate(1),
@@ -306,7 +306,7 @@ fn polygons_segments_and_points() {
 #[test]
 fn needles_and_plates_of_aspect_up_to_a_million() {
     family("aspect", 10, 100, |dice| {
-        let mut thin = |dice: &mut Dice| {
+        let thin = |dice: &mut Dice| {
             let factors: [f64; 3] = std::array::from_fn(|_| dice.decade(-6.0, 0.0));
             let largest = factors.iter().fold(0.0f64, |m, &x| m.max(x));
             let points =

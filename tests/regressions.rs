@@ -156,6 +156,21 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
     }
 }
 
+/// The reported direction was 3e-5 short of a unit vector, and the upper bound takes it for one.
+#[test]
+fn a_point_at_the_apex_of_a_cone_in_f32() {
+    #[rustfmt::skip]
+    let tilt = [
+        1.0, -1.071875471410702e-14, 1.8248681103553988e-14,
+        1.071875471410702e-14, 1.0, -2.5220819356575053e-14,
+        -1.8248681103553988e-14, 2.5220819356575053e-14, 1.0,
+    ];
+    let a = body("cone", &[0.1151161789894104, 1.3573238849639893], tilt, [0.0; 3]);
+    let at = [2.476936943041335e-14, -3.423282301075539e-14, 1.3573238849639893];
+    let b = body("sphere", &[0.0], IDENTITY, at);
+    pair::<f32>(&a, &b, &[]);
+}
+
 /// Two points far from their frames, 4e-12 apart: what the sum that cancels leaves is of the size of their distance.
 #[test]
 fn points_far_from_their_frames() {

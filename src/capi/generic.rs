@@ -7,7 +7,7 @@ use super::status::{
 };
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
-use crate::support::{BoxShape, Failure, Point, one_by_one};
+use crate::support::{Failure, check_numbers, check_sizes, one_by_one};
 use core::ffi::c_void;
 
 /// The largest dimension.
@@ -68,7 +68,7 @@ pub fn length<T: Real>(x: T) -> Check<T> {
 /// Lengths: each finite, not too large, >= 0.
 #[inline(always)]
 pub fn lengths<T: Real, const K: usize>(list: [T; K]) -> Check {
-    BoxShape::new(Vector::<T, K>::from(list)).map(|_| ()).map_err(from_shape)
+    check_sizes(list.iter()).map_err(from_shape)
 }
 
 /// Lengths: finite, not too large, >= 0, and not all zero.
@@ -82,10 +82,7 @@ pub fn semi_axes<T: Real>(list: &[T]) -> Check {
 
 /// Coordinates: finite and not too large.
 pub fn coordinates<T: Real>(list: &[T]) -> Check {
-    for &x in list {
-        Point::new(Vector::<T, 1>::new(x)).map_err(from_shape)?;
-    }
-    Ok(())
+    check_numbers(list.iter()).map_err(from_shape)
 }
 
 pub fn finite<T: Real>(list: &[T]) -> Check {

@@ -245,7 +245,7 @@ impl<S, T: Real, const N: usize> Linear<S, T, N> {
         let w = if in_range(u, self.stretch) {
             transposed(&self.matrix, u)
         } else {
-            transposed(&self.matrix, &rescaled(u, self.stretch))
+            transposed(&self.matrix, &rescaled(*u, self.stretch))
         };
         // The inner set must not see a zero direction; here every point of it is as far as any other.
         if w.iter().all(|x| x.is_zero()) { *u } else { w }

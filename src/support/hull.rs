@@ -140,7 +140,7 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
     #[inline(always)]
     fn in_range(&self, u: &Vector<T, N>) -> Vector<T, N> {
         let u = one_by_one(u);
-        if in_range(&u, self.extent) { u } else { rescaled(&u, self.extent) }
+        if in_range(&u, self.extent) { u } else { rescaled(u, self.extent) }
     }
 }
 

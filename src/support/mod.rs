@@ -35,10 +35,11 @@ pub use graph::{HullGraph, graph_len};
 #[cfg(feature = "capi")]
 pub(crate) use hull::List;
 pub use hull::{Hull, Points};
-pub(crate) use load::one_by_one;
 #[cfg(feature = "capi")]
-pub(crate) use shapes::near_unit;
+pub(crate) use load::{alone, one_by_one};
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
+#[cfg(feature = "capi")]
+pub(crate) use shapes::{check_numbers, check_sizes, near_unit};
 pub use solids::{Capsule, Cone, Cylinder};
 
 /// A support function gave up; the number is the caller's own code (never zero).
@@ -91,7 +92,8 @@ pub trait Support<T: Real, const N: usize> {
     }
 
     /// The part of [`radius`](Support::radius) that is not a ball by definition, as that of a sphere, capsule or margin is, but was split off a
-    /// rounded body ([`Ellipsoid`]). A matrix that is a rotation only roughly does not leave it a ball.
+    /// rounded body ([`Ellipsoid`]). A matrix that is a rotation only roughly does not leave it a ball. A wrapper that forwards `radius`
+    /// must forward this too.
     fn rolling_radius(&self) -> T {
         T::zero()
     }

@@ -59,14 +59,21 @@ pub(crate) fn largest<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
 }
 
 /// A list of sizes is usable: each finite, not too large, >= 0.
-pub(crate) fn check_sizes<'a, T: Real>(mut sizes: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
-    sizes.try_for_each(|&x| {
-        check_numbers(core::iter::once(&x))?;
-        if x < T::zero() { Err(ShapeError::Negative) } else { Ok(()) }
-    })
+#[inline(always)]
+pub(crate) fn check_sizes<'a, T: Real>(sizes: impl Iterator<Item = &'a T> + Clone) -> Result<(), ShapeError> {
+    // NaN and infinity fail the comparisons, so there is no test for them. All are compared before the one branch.
+    let usable = sizes.clone().fold(true, |all, &x| all & (x >= T::zero()) & (x <= ceiling()));
+    if usable { Ok(()) } else { Err(wrong_size(sizes)) }
+}
+
+#[cold]
+fn wrong_size<'a, T: Real>(sizes: impl Iterator<Item = &'a T>) -> ShapeError {
+    let first = sizes.copied().find(|&x| !(x >= T::zero() && x <= ceiling()));
+    if first.is_some_and(|x| x < T::zero() && x.finite()) { ShapeError::Negative } else { ShapeError::NonFinite }
 }
 
 /// A list of coordinates is usable: each finite and not too large.
+#[inline]
 pub(crate) fn check_numbers<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
     // NaN and infinity fail the comparison, so there is no test for them.
     if numbers.all(|&x| magnitude(x) <= ceiling()) { Ok(()) } else { Err(ShapeError::NonFinite) }
@@ -79,41 +86,47 @@ pub(crate) fn in_range<T: Real, const N: usize>(u: &Vector<T, N>, size: T) -> bo
     s > floor() && s < ceiling()
 }
 
-/// A positive multiple of `u` for which [`in_range`] holds (unless `u` or `size` is zero).
+/// A positive multiple of `u` for which [`in_range`] holds (unless `u` or `size` is zero). In and out by value and one by one, so
+/// that the callers' `u` stays in registers on the usual path.
+#[inline(always)]
+pub(crate) fn rescaled<T: Real, const N: usize>(u: Vector<T, N>, size: T) -> Vector<T, N> {
+    one_by_one(&rescaled_out_of_line(u, size))
+}
+
 #[cold]
 #[inline(never)]
-pub(crate) fn rescaled<T: Real, const N: usize>(u: &Vector<T, N>, size: T) -> Vector<T, N> {
-    let m = largest(u);
+fn rescaled_out_of_line<T: Real, const N: usize>(u: Vector<T, N>, size: T) -> Vector<T, N> {
+    let m = largest(&u);
     if m > T::zero() {
         // Divided by, not multiplied with 1/m: that overflows for subnormal m.
         let r = T::ROUNDOFF * T::ROUNDOFF;
         let lift = if size < T::one() { T::one() / (r * r) } else { T::one() };
         u.map(|x| x / m * lift)
     } else {
-        *u
+        u
     }
 }
 
 /// A direction for points of usual sizes: `u` itself if it is not far from unit length, else a multiple that is.
 #[cfg(feature = "capi")]
 #[inline(always)]
-pub(crate) fn near_unit<T: Real, const N: usize>(u: &Vector<T, N>) -> Vector<T, N> {
+pub(crate) fn near_unit<T: Real, const N: usize>(u: Vector<T, N>) -> Vector<T, N> {
     let s = u.iter().fold(-T::zero(), |s, &x| s + magnitude(x));
     let far = T::count(1 << 16);
-    if s < far && s * far > T::one() { *u } else { rescaled(u, T::one()) }
+    if s < far && s * far > T::one() { u } else { rescaled(u, T::one()) }
 }
 
 /// w / |w| with relative error (N/2 + 4) roundoff for every finite `w`; zero for zero.
 #[inline(always)]
 pub(crate) fn unit<T: Real, const N: usize>(w: &Vector<T, N>) -> Vector<T, N> {
     let s = w.dot(w);
-    if s > floor() && s < T::HUGE { w * (T::one() / s.root()) } else { unit_out_of_range(w) }
+    if s > floor() && s < T::HUGE { w * (T::one() / s.root()) } else { one_by_one(&unit_out_of_range(*w)) }
 }
 
 #[cold]
 #[inline(never)]
-fn unit_out_of_range<T: Real, const N: usize>(w: &Vector<T, N>) -> Vector<T, N> {
-    let m = largest(w);
+fn unit_out_of_range<T: Real, const N: usize>(w: Vector<T, N>) -> Vector<T, N> {
+    let m = largest(&w);
     if m > T::zero() {
         let v = w.map(|x| x / m);
         v * (T::one() / v.dot(&v).root())
@@ -322,7 +335,7 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
 
     #[cold]
     #[inline(never)]
-    fn out_of_range(&self, u: &Vector<T, N>) -> Vector<T, N> {
+    fn out_of_range(self, u: Vector<T, N>) -> Vector<T, N> {
         let size = largest(&self.semi);
         if size > T::zero() {
             // Both factors at most 1: what underflows now is far below roundoff relative to |u| max(D).
@@ -338,15 +351,15 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
 impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        let u = &one_by_one(u);
-        let w = self.semi.component_mul(u);
-        let (s, t) = (w.dot(&w), u.dot(u));
+        let u = one_by_one(u);
+        let w = self.semi.component_mul(&u);
+        let (s, t) = (w.dot(&w), u.dot(&u));
         if s > floor() && s < T::HUGE && t > floor() && t < T::HUGE {
             let inverse = T::one() / s.root();
             let point = self.semi.zip_map(&w, |d, x| d * (x * inverse));
             if self.ball > T::zero() { Ok(point - u * (self.ball / t.root())) } else { Ok(point) }
         } else {
-            Ok(self.out_of_range(u))
+            Ok(one_by_one(&self.out_of_range(u)))
         }
     }
     fn rolling_radius(&self) -> T {

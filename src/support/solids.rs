@@ -160,9 +160,9 @@ impl<T: Real> Cone<T> {
 impl<T: Real> Support<T, 3> for Cone<T> {
     #[inline]
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        let u = &one_by_one(u);
+        let u = one_by_one(u);
         let size = self.radius + self.half_height;
-        if in_range(u, size) { Ok(self.choose(u)) } else { Ok(self.choose(&rescaled(u, size))) }
+        Ok(self.choose(&if in_range(&u, size) { u } else { rescaled(u, size) }))
     }
     fn extent(&self) -> T {
         length(&Vector::<T, 2>::new(self.radius, self.half_height))

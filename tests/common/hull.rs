@@ -54,7 +54,7 @@ impl ExactHull {
                     let length = dot64(&m, &m).sqrt();
                     // Error of the direction of m.
                     let blur = 1e-14 * (dot64(&e, &e) * dot64(&f, &f)).sqrt() / length;
-                    if !(blur < 0.1) {
+                    if blur.is_nan() || blur >= 0.1 {
                         // Collinear as far as f64 can tell: kept, for the exact evaluation to judge.
                         triangles.push([i, j, k]);
                         continue;
@@ -134,7 +134,7 @@ impl Least<'_> {
         let u = u();
         let length = norm(&u);
         // Parallel edges have no cross product, but rounding: that would be a direction made of noise.
-        if !(length.hi > 1e-24 * scale_of_u) {
+        if length.hi <= 1e-24 * scale_of_u {
             return;
         }
         for sign in [1.0, -1.0] {
@@ -247,20 +247,16 @@ fn point_triangle(p: &V3, t: &[V3; 3]) -> Option<Dd> {
     None
 }
 
-/// Squared distance of the segments p + s e and q + r f, if attained inside both.
+/// Squared distance of the segments p + s e and q + r f, if attained inside both. By the common perpendicular n: the
+/// normal equations would lose twice the digits where the lines are almost parallel.
 fn lines(p: &V3, e: &V3, q: &V3, f: &V3) -> Option<Dd> {
-    let w = sub(q, p);
-    let (ee, ef, ff, we, wf) = (dot(e, e), dot(e, f), dot(f, f), dot(&w, e), dot(&w, f));
-    let det = ee * ff - ef * ef;
-    if !(det.hi > 1e-24 * (ee * ff).hi) {
+    let (w, n) = (sub(q, p), cross(e, f));
+    let squared = dot(&n, &n);
+    // Parallel to 20 digits: the ends decide.
+    if squared.hi <= 1e-40 * (dot(e, e) * dot(f, f)).hi {
         return None;
     }
-    let (s, r) = ((we * ff - wf * ef) / det, (we * ef - wf * ee) / det);
-    if inside(s) && inside(r) {
-        // Along the common perpendicular: for lines that are almost parallel, s and r themselves are inaccurate.
-        let n = cross(e, f);
-        let along = dot(&w, &n);
-        return Some(along * along / dot(&n, &n));
-    }
-    None
+    let (s, r) = (dot(&cross(&w, f), &n) / squared, dot(&cross(&w, e), &n) / squared);
+    let along = dot(&w, &n);
+    (inside(s) && inside(r)).then(|| along * along / squared)
 }

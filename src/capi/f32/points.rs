@@ -279,7 +279,7 @@ unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f32, point:
         (points.list()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.scan::<FAR>(&near_unit(&one_by_one(u)))) };
+    unsafe { room.write(*list.scan::<FAR>(&near_unit(one_by_one(u)))) };
     Ok(())
 }
 
@@ -293,6 +293,6 @@ unsafe fn climb<const FAR: bool>(user: *mut c_void, direction: *const f32, point
         (hull.points.list()?, hull.graph()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(&one_by_one(u)))) };
+    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(one_by_one(u)))) };
     Ok(())
 }

@@ -278,7 +278,7 @@ unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f64, point:
         (points.list()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.scan::<FAR>(&near_unit(&one_by_one(u)))) };
+    unsafe { room.write(*list.scan::<FAR>(&near_unit(one_by_one(u)))) };
     Ok(())
 }
 
@@ -292,6 +292,6 @@ unsafe fn climb<const FAR: bool>(user: *mut c_void, direction: *const f64, point
         (hull.points.list()?, hull.graph()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(&one_by_one(u)))) };
+    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(one_by_one(u)))) };
     Ok(())
 }

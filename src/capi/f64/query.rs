@@ -11,13 +11,14 @@ use super::super::generic::{
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, QDIST_ERROR_DIMENSION, outcome, qdist_outcome, qdist_status,
-    status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, QDIST_ERROR_DIMENSION, from_body, outcome, qdist_outcome,
+    qdist_status, status,
 };
 use super::gauges::qdist_gauge_f64;
 use super::sets::{qdist_body_f64, qdist_set_f64};
 use crate::qset::Ball;
 use crate::scalar::{Real, Vector};
+use crate::support::{alone, one_by_one};
 use crate::{Answer, Depth, Options, Outcome};
 
 /// How a query ends, and where it looks first. NULL stands for the defaults.
@@ -142,15 +143,21 @@ pub unsafe extern "C" fn qdist_depth3_f64(
     let solve = || {
         aligned(result)?;
         // SAFETY: what the header asks of the caller.
-        let (mut solver, a, b, options) = unsafe {
+        let (mut solver, a, b) = unsafe {
             let (a, b) = (shared(a)?, shared(b)?);
             let solver = handle::open::<f64, 3>(solver)?;
             known_size((&raw const (*result).struct_size).read(), size_of::<qdist_depth_f64>())?;
-            (solver, a, b, convert::<3>(options)?)
+            (solver, a, b)
         };
         // SAFETY: what the header asks of the caller.
-        let (a, b) = unsafe { (a.checked()?, b.checked()?) };
-        let depth = solver.depth(&a.place()?, &b.place()?, &options);
+        let (a, b, options) = unsafe { (a.checked()?, b.checked()?, convert::<3>(options)) };
+        // Taken by reference out of their `Result`s: to move a large struct that was just written takes long.
+        let (a, b) = (a.place(), b.place());
+        let depth = match (&a, &b, &options) {
+            (Ok(a), Ok(b), Ok(options)) => solver.depth(a, b, options),
+            (_, _, Err(status)) => return Err(*status),
+            (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),
+        };
         // SAFETY: checked.
         unsafe { result.write(from_depth(&depth)) };
         conclude(depth.outcome)
@@ -265,14 +272,14 @@ fn from_depth(depth: &Depth<f64>) -> qdist_depth_f64 {
         outcome: outcome(depth.outcome),
         lower: depth.lower,
         upper: depth.upper,
-        normal: depth.normal.into(),
-        point_a: depth.point_a.into(),
-        point_b: depth.point_b.into(),
+        normal: one_by_one(&depth.normal).into(),
+        point_a: one_by_one(&depth.point_a).into(),
+        point_b: one_by_one(&depth.point_b).into(),
         dimension: depth.dimension as u32,
         iterations: depth.iterations,
         support_calls: depth.support_calls,
-        vertices_used: depth.vertices as u32,
-        facets_used: depth.facets as u32,
+        vertices_used: alone(&depth.vertices) as u32,
+        facets_used: alone(&depth.facets) as u32,
         callback_code: depth.failure,
     }
 }

@@ -7,11 +7,11 @@
 
 use super::super::generic::{aligned, ask, coordinates, lengths, shared};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, from_body, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use crate::Body;
-use crate::depth::Matrix3;
+use crate::depth::{BodyError, Matrix3};
 use crate::scalar::{Real, Vector};
 use crate::support::{Failure, Support, Symmetry};
 use core::ffi::c_void;
@@ -169,10 +169,10 @@ pub(super) struct CheckedBody(qdist_body_f64);
 impl CheckedBody {
     /// The body in its pose.
     #[inline(always)]
-    pub(super) fn place(&self) -> Check<Body<'_, f64>> {
+    pub(super) fn place(&self) -> Result<Body<'_, f64>, BodyError> {
         let [a, b, c, d, e, f, g, h, i] = self.0.rotation;
         let rotation = Matrix3::new(a, b, c, d, e, f, g, h, i);
-        Body::new(self, rotation, Vector::from(self.0.translation)).map_err(from_body)
+        Body::new(self, rotation, Vector::from(self.0.translation))
     }
 }
 
