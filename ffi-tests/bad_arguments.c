@@ -336,6 +336,7 @@ static void queries(void) {
         WITH(first.set.extent, BAD[k], refused_set(QDIST_ERROR_NONFINITE));
         WITH(first.set.error, BAD[k], refused_set(QDIST_ERROR_NONFINITE));
         WITH(first.spread, BAD[k], refused(QDIST_ERROR_NONFINITE));
+        WITH(first.rolling_radius, BAD[k], refused(QDIST_ERROR_NONFINITE));
         options.absolute = BAD[k];
         refused_options(QDIST_ERROR_NONFINITE);
         options.relative = BAD[k];
@@ -350,6 +351,8 @@ static void queries(void) {
     WITH(first.rotation[0], 0, refused(QDIST_ERROR_ROTATION));
     WITH(first.symmetry, 3, refused(QDIST_ERROR_ARGUMENT));
     WITH(first.spread, -1, refused(QDIST_ERROR_ARGUMENT));
+    WITH(first.rolling_radius, -1, refused(QDIST_ERROR_ARGUMENT));
+    WITH(first.rolling_radius, 1, refused(QDIST_ERROR_ARGUMENT)); /* a part of set.radius, which is 0 */
     WITH(first.set.radius, -1, refused_set(QDIST_ERROR_ARGUMENT));
     WITH(first.set.extent, -1, refused_set(QDIST_ERROR_ARGUMENT));
     WITH(first.set.error, -1, refused_set(QDIST_ERROR_ARGUMENT));
@@ -381,15 +384,31 @@ static void queries(void) {
     CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_NULL);
     gauge.value = qdist_box_gauge_value_f64, gauge.extent = NAN;
     CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_NONFINITE);
+}
 
-    /* A shape that is spoiled after its body was made. */
-    box.half[0] = NAN;
-    CHECK(qdist_depth3_f64(solver, &first, &second, NULL, &depth) == QDIST_ERROR_CALLBACK);
-    CHECK(depth.outcome == QDIST_SUPPORT_FAILED && depth.callback_code == QDIST_ERROR_NONFINITE);
-    box.half[0] = -1;
-    CHECK(qdist_depth3_f64(solver, &first, &second, NULL, &depth) == QDIST_ERROR_CALLBACK);
-    CHECK(depth.callback_code == QDIST_ERROR_ARGUMENT && depth.lower <= depth.upper);
-    box.half[0] = 1;
+/* Shapes are trusted once their body is made. One that is spoiled later gives points that are not finite, and nothing worse. */
+static void spoiled(void) {
+    qdist_body_f64 bodies[5];
+    double *const sizes[] = {&box.half[0], &ellipsoid.semi_axes[1], &cylinder.radius, &cylinder.half_height,
+                             &capsule.half_height, &cone.radius, &cone.half_height};
+    const unsigned owner[] = {0, 1, 2, 2, 3, 4, 4};
+    unsigned i, k;
+    CHECK(qdist_body_box_f64(&bodies[0], &box) == QDIST_OK && qdist_body_ellipsoid_f64(&bodies[1], &ellipsoid) == QDIST_OK);
+    CHECK(qdist_body_cylinder_f64(&bodies[2], &cylinder) == QDIST_OK && qdist_body_capsule_f64(&bodies[3], &capsule) == QDIST_OK);
+    CHECK(qdist_body_cone_f64(&bodies[4], &cone) == QDIST_OK);
+    for (i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
+        const double good = *sizes[i];
+        for (k = 0; k < 3; ++k) {
+            *sizes[i] = BAD[k];
+            CHECK(qdist_depth3_f64(solver, &bodies[owner[i]], &second, NULL, &depth) == QDIST_ERROR_CALLBACK);
+            CHECK(depth.outcome == QDIST_SUPPORT_FAILED && depth.callback_code == QDIST_CALLBACK_NONFINITE);
+            CHECK(depth.lower <= depth.upper);
+        }
+        *sizes[i] = -1;
+        CHECK(qdist_depth3_f64(solver, &bodies[owner[i]], &second, NULL, &depth) == QDIST_OK);
+        *sizes[i] = good;
+        CHECK(qdist_depth3_f64(solver, &bodies[owner[i]], &second, NULL, &depth) == QDIST_OK);
+    }
 }
 
 static void names(void) {
@@ -407,6 +426,7 @@ int main(void) {
     lists();
     sets_and_gauges();
     queries();
+    spoiled();
     names();
     return finish("bad_arguments");
 }

@@ -52,10 +52,11 @@ static Q(depth) Q(ask)(qdist_solver *solver, const Q(body) *a, const Q(body) *b,
 
 /* Does the bracket contain d, and is it narrow? Near 0, rounding decides. */
 static int Q(brackets)(double lower, double upper, double d) {
-    return lower <= d && d <= upper && upper - lower <= 2 * WIDTH * fabs(d) + 0.05 * WIDTH;
+    return lower <= d && d <= upper && upper - lower <= WIDTH * fabs(d) + 0.05 * WIDTH;
 }
 
-/* Are the witness points depth * normal apart, and is the normal of unit length? */
+/* Are the witness points depth * normal apart, sideways to the square root of the tolerance, and is the normal of unit
+ * length? */
 static int Q(consistent)(const Q(depth) *depth, double scale) {
     double length = 0, miss = 0;
     int i;
@@ -64,7 +65,7 @@ static int Q(consistent)(const Q(depth) *depth, double scale) {
         length += (double)depth->normal[i] * depth->normal[i];
         miss += gap * gap;
     }
-    return fabs(length - 1) < 1e-5 && sqrt(miss) < 0.01 * scale;
+    return fabs(length - 1) < 1e-5 && sqrt(miss) < sqrt(WIDTH) * scale;
 }
 
 static void Q(pairs)(qdist_solver *solver) {
@@ -179,6 +180,65 @@ static void Q(limits)(qdist_solver *solver) {
     depth = Q(ask)(solver, &a, &b, &options);
     CHECK(depth.outcome == QDIST_CONVERGED && depth.upper >= 1 && depth.upper - depth.lower <= WIDTH * depth.upper);
     CHECK(Q(consistent)(&depth, 1));
+}
+
+/* h(u) = |D M^T u| + r of an ellipsoid with a matrix and a ball, for a direction of any length. */
+static double Q(swollen)(const Q(body) *egg, const double *semi, double r, const double *u) {
+    double squares = 0, length = 0;
+    int i, k;
+    for (i = 0; i < 3; ++i) {
+        double along = 0;
+        for (k = 0; k < 3; ++k) along += (double)egg->rotation[3 * k + i] * u[k];
+        squares += semi[i] * semi[i] * along * along;
+        length += u[i] * u[i];
+    }
+    return sqrt(squares / length) + r;
+}
+
+/* Matrices that are rotations only roughly: the ball that rolls inside an ellipsoid does not stay a ball under them, so that the
+ * bracket must be that of the image. */
+static void Q(skewed)(qdist_solver *solver) {
+    const double semi[3] = {1.0, 1.25, 1.5};
+    const double off[] = {0, 1e-6, -1e-6, 4e-5, -4e-5};
+    const Q(qdist_ellipsoid) egg = {{1.0, 1.25, 1.5}};
+    const Q(qdist_sphere) ball = {0.5};
+    Q(qdist_options) options;
+    Q(body) a, b;
+    Q(depth) depth;
+    unsigned k;
+    int i, j;
+
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    options.relative = (REAL)(WIDTH * 1e-2);
+    CHECK(Q(qdist_body_ellipsoid)(&a, &egg) == QDIST_OK && Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    CHECK(a.rolling_radius > 0 && a.rolling_radius == a.set.radius && b.rolling_radius == 0);
+    for (k = 0; k < sizeof off / sizeof *off; ++k) {
+        double u[3], least = 1e9;
+        /* Larger in all directions: the shortest axis decides. */
+        memset(a.rotation, 0, sizeof a.rotation);
+        a.rotation[0] = a.rotation[4] = a.rotation[8] = (REAL)(1 + off[k]);
+        depth = Q(ask)(solver, &a, &b, &options);
+        CHECK(depth.lower <= a.rotation[0] + 0.5 && depth.upper >= a.rotation[0] + 0.5);
+        CHECK(depth.upper - depth.lower < 1e-5);
+        /* Sheared and turned: no direction may be below the bracket, and the one that is reported is the bracket's upper end. */
+        a.rotation[0] = a.rotation[4] = (REAL)0.6, a.rotation[1] = (REAL)(-0.8 + off[k]), a.rotation[3] = (REAL)0.8;
+        depth = Q(ask)(solver, &a, &b, &options);
+        for (i = 0; i < 200; ++i) {
+            for (j = 0; j < 200; ++j) {
+                const double h = (u[0] = cos(i * 0.0157), u[1] = sin(i * 0.0157), u[2] = (j - 100) * 1e-3,
+                                  Q(swollen)(&a, semi, 0.5, u));
+                if (h < least) least = h;
+            }
+        }
+        for (i = 0; i < 3; ++i) u[i] = depth.normal[i];
+        CHECK(depth.lower <= least && Q(swollen)(&a, semi, 0.5, u) <= depth.upper && depth.upper - least < 1e-4);
+    }
+    /* A margin is a ball by itself, whatever the matrix. */
+    memset(a.rotation, 0, sizeof a.rotation);
+    a.rotation[0] = a.rotation[4] = a.rotation[8] = (REAL)(1 + 4e-5);
+    a.set.radius += (REAL)0.25;
+    depth = Q(ask)(solver, &a, &b, &options);
+    CHECK(depth.lower <= a.rotation[0] + 0.75 && depth.upper >= a.rotation[0] + 0.75 && depth.upper - depth.lower < 1e-5);
 }
 
 /* A regular hexagonal prism of radius 1 and height 2: a shape that the library does not know. Counts its calls. */
@@ -409,6 +469,7 @@ static void Q(smoke)(void) {
     if (solver == NULL) return;
     Q(pairs)(solver);
     Q(limits)(solver);
+    Q(skewed)(solver);
     Q(callbacks)(solver);
     Q(gauges)(solver);
     Q(hulls)(solver);

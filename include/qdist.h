@@ -25,13 +25,14 @@
  *             dimensions or shapes.
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
- *             qdist_hull_prepare the words of the graph are unspecified.) Sizes, poses and options are checked
- *             at every call.
+ *             qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
+ *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
  *             no global state, prints nothing and never exits. A struct that points to another one must not outlive
- *             it; structs are read during a call only, and may be changed between calls.
+ *             it. Structs are read during a call only, and may be changed between calls; when a shape, list or graph changes, all
+ *             that is made of it must be made anew.
  * Threads     All functions may be called from several threads at the same time. A solver serves one call at a time; shapes,
  *             sets and bodies are only read, and may be shared.
  * Callbacks   must not unwind, longjmp, or use the solver that is calling them.
@@ -323,7 +324,10 @@ qdist_status qdist_body_set_f64(qdist_body_f64 *body,
  * may be zero: flat shapes are legal.
  *
  * `qdist_body_..._f64` checks a shape, makes body->set point at it and sets the identity pose; the shape must outlive
- * the body. `qdist_..._support_f64` is the support function that it puts there, that of the shape's core (without the ball
+ * the body. Sizes are not checked again: make the body anew when they change. (A size that has become NaN or
+ * infinite ends the query with QDIST_CALLBACK_NONFINITE; after any other change, the answer means nothing.)
+ *
+ * `qdist_..._support_f64` is the support function that the body gets, that of the shape's core (without the ball
  * that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
  * shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set. */
 
@@ -399,7 +403,8 @@ int32_t qdist_cone_support_f64(void *user, const double *direction, double *poin
 /* ======================================================= HULLS OF POINTS =======================================================
  *
  * The convex hull of a list of points, in any dimension, by looking at all of them; and large hulls in space, by
- * climbing from vertex to vertex. The lists must outlive the set or body that is made of them. */
+ * climbing from vertex to vertex. The lists must outlive the set or body that is made of them, which is when their
+ * coordinates are read and checked: make it anew when they change. */
 
 // The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
 typedef struct {

@@ -103,6 +103,7 @@ pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
 }
 
 /// v / |v| for v not zero, also where squares underflow.
+#[inline]
 pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     let squared = v.dot(v);
     if squared > T::SAFE_SQUARE {

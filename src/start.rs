@@ -3,7 +3,7 @@
 //! The paper takes them from a closest-point iteration; none is needed, since expansion tolerates an origin outside. A flat
 //! set shows up here.
 
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, Vector, norm, unit};
 use crate::simplex::{Edges, MAX_CORNERS};
 use heapless::Vec;
 
@@ -46,9 +46,8 @@ impl<T: Real, const N: usize> Start<T, N> {
             if squared < whole * T::of(0.01) {
                 // Much was cancelled: once more, for what rounding left.
                 towards = outside(&towards);
-                return towards * (T::one() / norm(&towards));
             }
-            return towards * (T::one() / squared.root());
+            return unit(&towards);
         }
         let mut best = Vector::zeros();
         let mut longest = T::zero();

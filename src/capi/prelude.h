@@ -25,13 +25,14 @@
  *             dimensions or shapes.
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
- *             qdist_hull_prepare the words of the graph are unspecified.) Sizes, poses and options are checked
- *             at every call.
+ *             qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
+ *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
  *             no global state, prints nothing and never exits. A struct that points to another one must not outlive
- *             it; structs are read during a call only, and may be changed between calls.
+ *             it. Structs are read during a call only, and may be changed between calls; when a shape, list or graph changes, all
+ *             that is made of it must be made anew.
  * Threads     All functions may be called from several threads at the same time. A solver serves one call at a time; shapes,
  *             sets and bodies are only read, and may be shared.
  * Callbacks   must not unwind, longjmp, or use the solver that is calling them.

@@ -1,7 +1,7 @@
 //! Planes of facets: the incremental normal and its repair.
 
 use super::{Index, Polytope};
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, Vector, norm, unit};
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The normal of the plane through the ridge that facets F and G share, and a point at height `above` > 0
@@ -17,7 +17,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// n.v over the facet's vertices above the resolution; then the normal is projected once more onto the orthogonal
     /// complement of the facet's edges.
     pub(super) fn plane(&mut self, vertices: &[Index; N], normal: Vector<T, N>) -> Option<(Vector<T, N>, T)> {
-        let normal = normal * (T::one() / norm(&normal));
+        let normal = unit(&normal);
         let (lowest, highest) = self.heights(vertices, &normal)?;
         let (normal, offset) = if highest - lowest <= self.resolution() {
             (normal, lowest)
@@ -41,7 +41,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     #[cold]
     fn turn_away(&mut self, vertices: &[Index; N], normal: Vector<T, N>, offset: T) -> Option<(Vector<T, N>, T)> {
         let away = self.vertices.get(usize::from(*vertices.first()?))?.point - self.center;
-        let away = away * (T::one() / norm(&away));
+        let away = unit(&away);
         for edges in (0..N).rev() {
             if let Some(turned) = self.repair(vertices, &away, edges) {
                 let (low, _) = self.heights(vertices, &turned)?;

@@ -2,7 +2,8 @@
 //! HULLS OF POINTS
 //!
 //! The convex hull of a list of points, in any dimension, by looking at all of them; and large hulls in space, by
-//! climbing from vertex to vertex. The lists must outlive the set or body that is made of them.
+//! climbing from vertex to vertex. The lists must outlive the set or body that is made of them, which is when their
+//! coordinates are read and checked: make it anew when they change.
 
 use super::super::generic::{
     MAX_DIMENSION, aligned, array, coordinates, dimension, farthest, in_range, in_space, reach, shared, tiny,

@@ -4,7 +4,10 @@
 //! may be zero: flat shapes are legal.
 //!
 //! `qdist_body_..._f64` checks a shape, makes body->set point at it and sets the identity pose; the shape must outlive
-//! the body. `qdist_..._support_f64` is the support function that it puts there, that of the shape's core (without the ball
+//! the body. Sizes are not checked again: make the body anew when they change. (A size that has become NaN or
+//! infinite ends the query with QDIST_CALLBACK_NONFINITE; after any other change, the answer means nothing.)
+//!
+//! `qdist_..._support_f64` is the support function that the body gets, that of the shape's core (without the ball
 //! that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
 //! shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set.
 
