@@ -1,7 +1,9 @@
 #!/bin/sh
 # Proves that no panic, no malloc and no libc symbol can be reached from the exported functions: with `must-not-panic` the
 # panic handler calls a symbol that does not exist, and the library is linked with every function of the header as a root
-# and nothing else but the mem* functions, which compilers expect everywhere. Then prints sizes.
+# and nothing else but the mem* functions, which compilers expect everywhere. Then prints sizes, and proves that a program of
+# one shape, dimension and scalar contains no other, and that a program in float computes nothing in double: on a processor
+# with an FPU for float only, each such operation would be a call of a software routine.
 set -eu
 cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-target}/purity
@@ -43,24 +45,52 @@ echo "purity: $count functions reach no panic, no allocation and no libc"
 echo "sizes in bytes:"
 # shellcheck disable=SC2086
 size "$target/all" | awk 'NR == 2 { printf "  whole library: text %d, data %d, bss %d\n", $1, $2, $3 }'
-cat >"$target/box.c" <<'C'
+# box_program SUFFIX: the depth of two boxes in space, what a firmware would call.
+box_program() {
+    sed "s/SUFFIX/$1/g" >"$target/box_$1.c" <<'C'
 #include "qdist.h"
-/* The depth of two boxes, float, 3-D: what a firmware would call. */
-qdist_status box_depth(qdist_solver *solver, const qdist_box_f32 *a, const qdist_box_f32 *b, qdist_depth_f32 *depth);
-qdist_status box_depth(qdist_solver *solver, const qdist_box_f32 *a, const qdist_box_f32 *b, qdist_depth_f32 *depth) {
-    qdist_body_f32 x, y;
-    if (qdist_body_box_f32(&x, a) != QDIST_OK || qdist_body_box_f32(&y, b) != QDIST_OK) return 1;
-    return qdist_depth3_f32(solver, &x, &y, 0, depth);
+qdist_status box_depth(qdist_solver *solver, const qdist_box_SUFFIX *a, const qdist_box_SUFFIX *b, qdist_depth_SUFFIX *depth);
+qdist_status box_depth(qdist_solver *solver, const qdist_box_SUFFIX *a, const qdist_box_SUFFIX *b, qdist_depth_SUFFIX *depth) {
+    qdist_body_SUFFIX x, y;
+    if (qdist_body_box_SUFFIX(&x, a) != QDIST_OK || qdist_body_box_SUFFIX(&y, b) != QDIST_OK) return 1;
+    return qdist_depth3_SUFFIX(solver, &x, &y, 0, depth);
 }
 C
-"$cc" -O2 -ffunction-sections -ffreestanding -Iinclude -c "$target/box.c" -o "$target/box.o"
-# shellcheck disable=SC2086
-ld --gc-sections -e box_depth -u qdist_solver_init3_f32 $memory -o "$target/box" "$target/box.o" "$lib"
-size "$target/box" | awk 'NR == 2 { printf "  boxes, 3-D, float: text %d, data %d, bss %d\n", $1, $2, $3 }'
+    "$cc" -O2 -ffunction-sections -ffreestanding -Iinclude -c "$target/box_$1.c" -o "$target/box_$1.o"
+    # shellcheck disable=SC2086
+    ld --gc-sections -e box_depth -u "qdist_solver_init3_$1" $memory -o "$target/box_$1" "$target/box_$1.o" "$lib"
+}
+box_program f32
+size "$target/box_f32" | awk 'NR == 2 { printf "  boxes, 3-D, float: text %d, data %d, bss %d\n", $1, $2, $3 }'
 # What a program does not use is not linked.
-foreign=$(nm -C "$target/box" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|gauge|init[2456]|solve[2-6]' || true)
+foreign=$(nm -C "$target/box_f32" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|gauge|init[2456]|solve[2-6]' || true)
 if [ -n "$foreign" ]; then
     echo "purity: a program of boxes contains what it does not use:" >&2
     echo "$foreign" >&2
     exit 1
+fi
+
+# Functions of a program that calculate, compare or convert in double. Loads and stores of 8 bytes are movsd too, and bit masks
+# are no arithmetic.
+doubles() {
+    objdump --disassemble --demangle --no-show-raw-insn "$1" | awk '
+        /^[0-9a-f]+ </ { name = $0; sub(/^[0-9a-f]+ /, "", name) }
+        $2 ~ /^v?(add|sub|mul|div|sqrt|max|min|u?comi|cmp[a-z]*|round|fn?m(add|sub)[0-9]*)(sd|pd)$/ ||
+            ($2 ~ /^v?cvt/ && $2 ~ /(sd|pd)/) || $2 ~ /^f(ld|st|add|sub|mul|div|sqrt)/ { print "  " name " " $2 }' | sort | uniq -c
+}
+if [ "$(uname -m)" = x86_64 ]; then
+    box_program f64
+    if [ -z "$(doubles "$target/box_f64")" ]; then
+        echo "purity: the search for double arithmetic does not work" >&2
+        exit 1
+    fi
+    found=$(doubles "$target/box_f32")
+    if [ -n "$found" ]; then
+        echo "purity: a program in float calculates in double:" >&2
+        echo "$found" >&2
+        exit 1
+    fi
+    echo "purity: a program of boxes in float contains nothing else and calculates nothing in double"
+else
+    echo "purity: double arithmetic is searched on x86-64 only"
 fi

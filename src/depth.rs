@@ -306,8 +306,8 @@ impl<T: Real> Solver<'_, T, 3> {
         };
         let ball = Ball::unit();
         if let Some(axis) = pair.common_axis() {
-            let mut query = Query::new(&pair, &ball, pair.radius(), *options);
-            if query.normalize().is_ok()
+            let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
+            if checked.and_then(|()| query.normalize()).is_ok()
                 && let Some(answer) = self.solve_meridian(&mut query, &axis)
             {
                 return Depth::new(&answer, &pair);

@@ -48,6 +48,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     /// Its inverse, or 1.
     per_ball: T,
     gauge_error: T,
+    /// What A says of its extent; 0: nothing.
+    extent: T,
     pub bounds: Bounds<T>,
     /// Tolerance and threshold in scaled units.
     pub options: Options<T, N>,
@@ -74,16 +76,26 @@ pub(crate) struct Query<'q, T, const N: usize> {
 }
 
 impl<'q, T: Real, const N: usize> Query<'q, T, N> {
-    /// `radius` is the ball term that is taken out of A.
-    pub fn new(a: &'q dyn Support<T, N>, q: &'q dyn Gauge<T, N>, radius: T, options: Options<T, N>) -> Self {
-        let extent = a.extent();
-        Query {
+    /// A query with `radius` as the ball term that is taken out of A. What the sets say of themselves is read once, here;
+    /// an error when one of these lengths is negative or not finite (then the query must not be run).
+    pub fn new(
+        a: &'q dyn Support<T, N>,
+        q: &'q dyn Gauge<T, N>,
+        radius: T,
+        options: Options<T, N>,
+    ) -> (Self, Result<(), Failure>) {
+        let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
+        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
+        let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
+        let ball = q.ball_radius();
+        let query = Query {
             a,
             q,
-            ball: q.ball_radius(),
-            per_ball: T::one() / q.ball_radius().unwrap_or(T::one()),
-            gauge_error: q.error(),
-            bounds: Bounds { support_error: a.error(), radius, dimension: N, unknown_extent: !(extent > T::zero()) },
+            ball,
+            per_ball: T::one() / ball.unwrap_or(T::one()),
+            gauge_error,
+            extent,
+            bounds: Bounds { support_error, radius, dimension: N, unknown_extent: !(extent > T::zero()) },
             options,
             scale: T::one(),
             reach: T::zero(),
@@ -97,14 +109,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             iterations: 0,
             support_calls: 0,
             dimension: N,
-        }
+        };
+        (query, checked)
     }
 
     /// Chooses the scale. A set that does not know its extent is asked once.
     pub fn normalize(&mut self) -> Result<(), Failure> {
-        let known = self.a.extent();
-        let extent = if known > T::zero() {
-            known
+        let extent = if self.extent > T::zero() {
+            self.extent
         } else {
             self.support_calls = self.support_calls.saturating_add(1);
             self.a.support(&self.first_direction())?.iter().fold(T::zero(), |m, x| m.at_least(x.abs()))

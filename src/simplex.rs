@@ -234,7 +234,8 @@ impl<T: Real, const N: usize> Simplex<T, N> {
                     point += (corner.vertex.point - base) * along;
                 }
             }
-            if point.dot(&point) > base.dot(&base) * T::of(1e-6) {
+            let squared = point.dot(&point);
+            if squared > base.dot(&base) * T::of(1e-6) || squared <= resolution * resolution {
                 break;
             }
         }

@@ -44,10 +44,6 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, options: &Options<T, N>) -> Answer<T, N> {
         self.polytope.reset();
         let radius = a.radius();
-        if [radius, a.extent(), a.error(), q.error()].iter().any(|x| !(x.finite() && *x >= T::zero())) {
-            let mut query = Query::new(a, q, T::zero(), *options);
-            return self.give_up(&mut query, Failure(crate::NOT_FINITE));
-        }
         if q.ball_radius().is_none() && radius > T::zero() {
             let inflated = Inflated(a);
             return self.run(Query::new(&inflated, q, T::zero(), *options));
@@ -55,8 +51,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         self.run(Query::new(a, q, radius, *options))
     }
 
-    fn run(&mut self, mut query: Query<'_, T, N>) -> Answer<T, N> {
-        if let Err(failure) = query.normalize() {
+    fn run(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
+        if let Err(failure) = checked.and_then(|()| query.normalize()) {
             return self.give_up(&mut query, failure);
         }
         let first = query.first_direction();
