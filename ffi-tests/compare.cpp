@@ -108,7 +108,11 @@ private:
         }
         points.assign(shape.vertices.begin(), shape.vertices.end());
         const auto count = static_cast<uint32_t>(points.size() / 3);
-        if (count >= WALK_FROM) return prepare_walk(count);
+        if (count >= WALK_FROM) {
+            const qdist_status status = prepare_walk(count);
+            // Flat up to rounding (a plate of aspect 1e6 in float): no graph, but the scan takes it.
+            if (status != QDIST_ERROR_FLAT) return status;
+        }
         cloud.points = points.data();
         cloud.count = count;
         cloud.dimension = 3;

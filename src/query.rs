@@ -241,6 +241,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.skipped
     }
 
+    /// The queue was made anew.
+    pub fn forget_skipped(&mut self) {
+        self.skipped = T::HUGE;
+    }
+
     /// A facet with this key is not queued.
     pub fn skip(&mut self, key: T) {
         self.skipped = self.skipped.at_most(key);

@@ -83,16 +83,19 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         loop {
             let Some((key, index)) = self.polytope.pop_lowest() else {
                 // No facet below the best upper bound is left.
+                if !self.confirm(query)? {
+                    continue;
+                }
                 let key = query.skipped().at_most(query.ratio());
-                query.verify()?;
                 return Ok(Expanded { stop: Stop::Rounding, key, facet: None });
             };
             let key = key.at_most(query.skipped());
             let end = |stop| Ok(Expanded { stop, key, facet: Some(index) });
             let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { return end(Stop::Rounding) };
-            if let Some(stop) = self.verdict(query, key)
-                && query.verify()?
-            {
+            if let Some(stop) = self.verdict(query, key) {
+                if !self.confirm(query)? {
+                    continue;
+                }
                 return end(stop);
             }
             if query.exhausted() {
@@ -102,16 +105,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             if query.is_outside(height) {
                 return end(Stop::Met);
             }
-            if let Some(stop) = self.verdict(query, key)
-                && query.verify()?
-            {
-                return end(stop);
-            }
             let tolerance = self.polytope.resolution();
-            if height - offset <= tolerance {
-                // The facet lies on the boundary of A, as far as arithmetic can tell.
-                query.verify()?;
-                return end(Stop::Rounding);
+            // On the boundary of A, as far as arithmetic can tell?
+            let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
+            if let Some(stop) = self.verdict(query, key).or(final_facet) {
+                if !self.confirm(query)? {
+                    continue;
+                }
+                return end(stop);
             }
             match self.polytope.insert(index, vertex, tolerance) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
@@ -119,6 +120,19 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 Some(Insertion::Rejected) | None => return end(Stop::Rounding),
             }
         }
+    }
+
+    /// Checks the best upper bound without A's shortcuts. When it rises, facets that were above it before matter
+    /// again, and the search goes on; that happens once at most.
+    fn confirm(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
+        if query.verify()? {
+            return Ok(true);
+        }
+        query.forget_skipped();
+        if let Some(lowest) = self.polytope.requeue(query.ratio()) {
+            query.skip(lowest);
+        }
+        Ok(false)
     }
 
     /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a

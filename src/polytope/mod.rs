@@ -263,6 +263,25 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         }
     }
 
+    /// Queues all live facets with a key below `ceiling`, and returns the lowest key of the others.
+    pub fn requeue(&mut self, ceiling: T) -> Option<T> {
+        self.heap.clear();
+        let mut lowest: Option<T> = None;
+        for number in 0..self.facet_top {
+            let (Some(facet), Ok(index)) = (self.facets.get(number), Index::try_from(number)) else { break };
+            let key = facet.key;
+            if !facet.is_live() {
+                continue;
+            }
+            if key < ceiling {
+                self.heap.push(key, index, self.facets);
+            } else {
+                lowest = Some(lowest.map_or(key, |least| least.at_most(key)));
+            }
+        }
+        lowest
+    }
+
     /// The queued live facet with the smallest key (eq. 21). It leaves the queue, not the polytope.
     pub fn pop_lowest(&mut self) -> Option<(T, Index)> {
         self.heap.pop(self.facets)

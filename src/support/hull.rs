@@ -220,6 +220,7 @@ impl<T: Real> Support<T, 3> for Hull<'_, T> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::graph::graph_len;
     use super::*;
 
     fn noise(n: usize, seed: u64) -> Vec<[f32; 3]> {
@@ -266,6 +267,65 @@ mod tests {
                 let points: Vec<[f64; 2]> = (0..n).map(|k| [if k >= first { 1.0 } else { 0.0 }, k as f64]).collect();
                 let p = Points::new(&points).unwrap().support(&Vector::from([1.0, 0.0])).unwrap();
                 assert_eq!(p, Vector::from([1.0, first as f64]), "{n} {first}");
+            }
+        }
+    }
+
+    /// Climbing finds a point as high as scanning does, from either end of the range of directions.
+    fn climbs_as_high_as_it_scans(points: &[[f32; 3]], on_hull: usize) {
+        let mut memory = Box::new(crate::Workspace::<f32, 3, 400, 816>::new());
+        let mut words = vec![0; graph_len(points.len())];
+        let graph = memory.solver().prepare_hull(points, &mut words).unwrap();
+        let with_edges = (0..points.len()).filter(|&i| !graph.neighbors(i as u16).is_empty()).count();
+        assert_eq!(with_edges, on_hull);
+        let hull = Hull::new(points, graph).unwrap();
+        assert!(hull.has_shortcuts());
+        for u in noise(2000, 5) {
+            for scale in [1.0f32, 1e-22, 1e30] {
+                let u = Vector::from(u.map(|x| x * scale));
+                let (climbed, scanned) = (hull.support(&u).unwrap(), hull.exhaustive(&u).unwrap());
+                let height = |p: &Vector<f32, 3>| u.map(f64::from).dot(&p.map(f64::from));
+                let slack = f64::from(hull.error()) * u.map(f64::from).norm();
+                assert!(height(&climbed) >= height(&scanned) - slack, "{u} {climbed} {scanned}");
+            }
+        }
+    }
+
+    #[test]
+    fn climbing_a_round_hull_equals_scanning() {
+        for offset in [0.0f32, 100.0] {
+            let round = |p: &[f32; 3]| {
+                let p = Vector::from(*p).normalize();
+                [p.x + offset, p.y, p.z]
+            };
+            let points: Vec<_> = noise(400, 3).iter().map(round).collect();
+            assert_eq!(Points::new(&points).unwrap().center().is_some(), offset > 0.0);
+            climbs_as_high_as_it_scans(&points, 400);
+        }
+    }
+
+    #[test]
+    fn climbing_a_box_with_points_on_its_faces_and_inside_equals_scanning() {
+        // A grid of 5 x 5 x 5 points, corners first: nothing else is outside of what they span.
+        let grid = (0..125).map(|i| [i % 5, i / 5 % 5, i / 25].map(|k| (k - 2) as f32));
+        let mut points: Vec<[f32; 3]> = grid.collect();
+        points.sort_by_key(|p| p.iter().filter(|x| x.abs() < 2.0).count());
+        climbs_as_high_as_it_scans(&points, 8);
+    }
+
+    #[test]
+    fn a_graph_of_nonsense_still_gives_points() {
+        let points = noise(9, 4);
+        let all = Points::new(&points).unwrap();
+        let nonsense: [&[u16]; 3] = [&[0, 0], &[1, 0, 99], &[2, 9, 1, 8, 0, 0, 7, 9, 9, 2, 0, 1, 5, 3, 3, 90, 2, 1]];
+        for words in nonsense {
+            let hull = Hull::new(&points, HullGraph::from_words(words).unwrap()).unwrap();
+            for u in noise(100, 6) {
+                let p = hull.support(&Vector::from(u)).unwrap();
+                assert!(points.iter().any(|q| Vector::from(*q) == p));
+                assert_eq!(hull.exhaustive(&Vector::from(u)), all.support(&Vector::from(u)));
+                // Without a usable seed, it is the scan.
+                assert!(words.len() > 3 || p == all.support(&Vector::from(u)).unwrap());
             }
         }
     }

@@ -1,0 +1,101 @@
+//! Sets made of sets: moved, mapped, added, subtracted, scaled, grown.
+//!
+//! A combination owns its parts; since a reference to a set is a set, `Rigid::new(&shape, ...)` borrows.
+//!
+//! # Rounding
+//!
+//! u is the unit roundoff, E the extent of an inner core, e its error. An extent of 0 means "unknown" (or truly 0, as of a
+//! sphere), and then the extent of the combination is 0 too. The rounding that a combination adds is in
+//! proportion to coordinates; what is in proportion to an unknown E is left out of `error` and is covered by the
+//! solver's own margin, 16 N u times the largest norm that it sees, as each type explains.
+
+use nalgebra::SMatrix;
+
+use super::shapes::above;
+use super::{Failure, Support, Symmetry};
+use crate::scalar::{Real, Vector};
+
+#[cfg(test)]
+mod dice;
+mod linear;
+mod rigid;
+mod scaled;
+mod sums;
+
+pub use linear::Linear;
+pub use rigid::Rigid;
+pub use scaled::{Margin, Scaled};
+pub use sums::{Difference, Sum};
+
+/// M^T u.
+#[inline(always)]
+fn transposed<T: Real, const N: usize>(m: &SMatrix<T, N, N>, u: &Vector<T, N>) -> Vector<T, N> {
+    let mut w = Vector::<T, N>::zeros();
+    for (w, column) in w.iter_mut().zip(&m.data.0) {
+        *w = column.iter().zip(u.iter()).fold(-T::zero(), |s, (&a, &b)| s + a * b);
+    }
+    w
+}
+
+/// M x + t.
+#[inline(always)]
+fn mapped<T: Real, const N: usize>(m: &SMatrix<T, N, N>, x: &Vector<T, N>, t: &Vector<T, N>) -> Vector<T, N> {
+    let mut p = Vector::<T, N>::from_element(-T::zero());
+    for (column, &x) in m.data.0.iter().zip(x.iter()) {
+        for (p, &a) in p.iter_mut().zip(column) {
+            *p += a * x;
+        }
+    }
+    // The translation comes last: added first, every partial sum would be rounded at its size.
+    p + t
+}
+
+/// The extent of a combination: `known` if the parts are known.
+#[inline(always)]
+fn if_known<T: Real>(parts: &[T], known: T) -> T {
+    if parts.iter().all(|&e| e > T::zero()) { above(known, 0) } else { T::zero() }
+}
+
+/// The error of a sum or difference of two points; the extents are widened by the error of the points.
+#[inline]
+fn pair_error<T: Real>(errors: T, extents: T) -> T {
+    above(errors + T::ROUNDOFF * (extents + errors), 0)
+}
+
+impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        (**self).support(u)
+    }
+    #[inline]
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        (**self).support_with_witness(u)
+    }
+    #[inline]
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        (**self).exhaustive(u)
+    }
+    #[inline]
+    fn has_shortcuts(&self) -> bool {
+        (**self).has_shortcuts()
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        (**self).radius()
+    }
+    fn rolling_radius(&self) -> T {
+        (**self).rolling_radius()
+    }
+    fn extent(&self) -> T {
+        (**self).extent()
+    }
+    fn center(&self) -> Option<(Vector<T, N>, T)> {
+        (**self).center()
+    }
+    fn symmetry(&self) -> Symmetry {
+        (**self).symmetry()
+    }
+    fn error(&self) -> T {
+        (**self).error()
+    }
+}

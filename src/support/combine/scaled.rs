@@ -1,0 +1,149 @@
+//! Sets that are scaled, or grown by a margin.
+
+use super::pair_error;
+use crate::scalar::{Real, Vector};
+use crate::support::shapes::{ShapeError, above, check_sizes};
+use crate::support::{Failure, Support, Symmetry};
+
+/// A set scaled about the origin by a factor >= 0, ball term included.
+///
+/// `error`: `factor e`, and one rounding of each coordinate, `u factor E`; an unknown E is covered by the solver's
+/// margin, since that rounding is at most u |p|.
+///
+/// ```
+/// use qdist::support::{Scaled, Sphere, Support};
+/// let s = Scaled::new(Sphere::<f64, 3>::new(0.5).unwrap(), 4.0).unwrap();
+/// assert_eq!(s.radius(), 2.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Scaled<S, T> {
+    shape: S,
+    factor: T,
+}
+
+impl<S, T: Real> Scaled<S, T> {
+    /// `shape` times `factor` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
+    pub fn new(shape: S, factor: T) -> Result<Self, ShapeError> {
+        check_sizes(core::iter::once(&factor))?;
+        Ok(Self { shape, factor })
+    }
+}
+
+impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.shape.support(u)? * self.factor)
+    }
+    #[inline]
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.shape.exhaustive(u)? * self.factor)
+    }
+    #[inline]
+    fn has_shortcuts(&self) -> bool {
+        self.shape.has_shortcuts()
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        self.shape.radius() * self.factor
+    }
+    fn rolling_radius(&self) -> T {
+        self.shape.rolling_radius() * self.factor
+    }
+    fn extent(&self) -> T {
+        above(self.shape.extent() * self.factor, 0)
+    }
+    fn error(&self) -> T {
+        self.factor * pair_error(self.shape.error(), self.shape.extent())
+    }
+}
+
+/// A set grown by a ball of radius `margin` >= 0: only the ball term changes, so the points and their error are those
+/// of the set.
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{BoxShape, Margin, Support}};
+/// let b = Margin::new(BoxShape::new(Vector::from([1.0, 1.0])).unwrap(), 0.1).unwrap();
+/// assert_eq!(b.radius(), 0.1);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Margin<S, T> {
+    shape: S,
+    margin: T,
+}
+
+impl<S, T: Real> Margin<S, T> {
+    /// `shape` grown by `margin` >= 0.
+    ///
+    /// # Errors
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`].
+    pub fn new(shape: S, margin: T) -> Result<Self, ShapeError> {
+        check_sizes(core::iter::once(&margin))?;
+        Ok(Self { shape, margin })
+    }
+}
+
+impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.shape.support(u)
+    }
+    #[inline]
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        self.shape.support_with_witness(u)
+    }
+    #[inline]
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.shape.exhaustive(u)
+    }
+    #[inline]
+    fn has_shortcuts(&self) -> bool {
+        self.shape.has_shortcuts()
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        self.shape.radius() + self.margin
+    }
+    fn rolling_radius(&self) -> T {
+        self.shape.rolling_radius()
+    }
+    fn extent(&self) -> T {
+        self.shape.extent()
+    }
+    fn symmetry(&self) -> Symmetry {
+        self.shape.symmetry()
+    }
+    fn error(&self) -> T {
+        self.shape.error()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dice::M;
+    use super::*;
+    use crate::support::{BoxShape, Difference, Point, Rigid, Sphere, Sum};
+
+    #[test]
+    fn bounds_propagate() {
+        let ball = Margin::new(Sphere::<f64, 3>::new(1.0).unwrap(), 0.5).unwrap();
+        let b = BoxShape::new(Vector::from([3.0, 4.0, 0.0])).unwrap();
+        let all = Sum::new(Scaled::new(&ball, 2.0).unwrap(), &b);
+        assert_eq!((all.radius(), all.extent()), (3.0, 0.0));
+        let moved = Rigid::new(&ball, M::identity(), Vector::from([5.0, 0.0, 0.0])).unwrap();
+        assert_eq!((moved.radius(), moved.extent()), (1.5, 0.0));
+        assert!(moved.error() > 0.0 && moved.error() < 1e-13);
+        let known = Difference::new(&b, Point::new(Vector::from([1.0, 0.0, 0.0])).unwrap());
+        assert!(known.extent() >= 6.0 && known.extent() < 6.000_001);
+        assert!(!known.has_shortcuts());
+        assert_eq!(Scaled::new(&b, -1.0).err(), Some(ShapeError::Negative));
+        assert_eq!(Margin::new(&b, f64::NAN).err(), Some(ShapeError::NonFinite));
+        let nothing = Scaled::new(&b, 0.0).unwrap();
+        assert_eq!(
+            (nothing.extent(), nothing.support(&Vector::from([1.0, 1.0, 1.0])).unwrap()),
+            (0.0, Vector::from([0.0, 0.0, 0.0]))
+        );
+    }
+}

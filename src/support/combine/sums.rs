@@ -1,0 +1,153 @@
+//! Minkowski sums and differences.
+
+use super::{if_known, pair_error};
+use crate::scalar::{Real, Vector};
+use crate::support::{Failure, Support};
+
+/// The Minkowski sum `{x + y : x in a, y in b}`. Ball terms add up.
+///
+/// `error`: the sum of the errors, and one rounding of the sum of the points, `u (E_a + E_b)`; an unknown extent is
+/// covered by the solver's margin, since that rounding is at most u |p|.
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{BoxShape, Sphere, Sum, Support}};
+/// let rounded = Sum::new(BoxShape::new(Vector::from([1.0, 1.0])).unwrap(), Sphere::new(0.1).unwrap());
+/// assert_eq!(rounded.radius(), 0.1);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Sum<A, B> {
+    /// The first set.
+    pub a: A,
+    /// The second set.
+    pub b: B,
+}
+
+impl<A, B> Sum<A, B> {
+    /// The sum of two sets.
+    #[inline]
+    pub const fn new(a: A, b: B) -> Self {
+        Self { a, b }
+    }
+}
+
+impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> for Sum<A, B> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.a.support(u)? + self.b.support(u)?)
+    }
+    #[inline]
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.a.exhaustive(u)? + self.b.exhaustive(u)?)
+    }
+    #[inline]
+    fn has_shortcuts(&self) -> bool {
+        self.a.has_shortcuts() || self.b.has_shortcuts()
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        self.a.radius() + self.b.radius()
+    }
+    fn rolling_radius(&self) -> T {
+        self.a.rolling_radius() + self.b.rolling_radius()
+    }
+    fn extent(&self) -> T {
+        let (a, b) = (self.a.extent(), self.b.extent());
+        if_known(&[a, b], a + b)
+    }
+    fn error(&self) -> T {
+        pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+    }
+}
+
+/// The Minkowski difference `{x - y : x in a, y in b}` of two bodies: it contains the origin exactly when they overlap
+/// with their ball terms. Ball terms add up. The witness is the core point of `a`.
+///
+/// `error` as for [`Sum`].
+///
+/// ```
+/// use qdist::{scalar::Vector, support::{BoxShape, Difference, Point, Support}};
+/// let b = BoxShape::new(Vector::from([1.0, 1.0])).unwrap();
+/// let p = Point::new(Vector::from([0.25, 0.0])).unwrap();
+/// let d = Difference::new(&b, &p);
+/// let (x, witness) = d.support_with_witness(&Vector::from([1.0, 1.0])).unwrap();
+/// assert_eq!((x[0], witness[0]), (0.75, 1.0));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Difference<A, B> {
+    /// The first body.
+    pub a: A,
+    /// The second body.
+    pub b: B,
+}
+
+impl<A, B> Difference<A, B> {
+    /// The difference of two bodies in the same frame.
+    #[inline]
+    pub const fn new(a: A, b: B) -> Self {
+        Self { a, b }
+    }
+}
+
+impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> for Difference<A, B> {
+    #[inline]
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.a.support(u)? - self.b.support(&-u)?)
+    }
+    #[inline]
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let a = self.a.support(u)?;
+        Ok((a - self.b.support(&-u)?, a))
+    }
+    #[inline]
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        Ok(self.a.exhaustive(u)? - self.b.exhaustive(&-u)?)
+    }
+    #[inline]
+    fn has_shortcuts(&self) -> bool {
+        self.a.has_shortcuts() || self.b.has_shortcuts()
+    }
+    #[inline]
+    fn radius(&self) -> T {
+        self.a.radius() + self.b.radius()
+    }
+    fn rolling_radius(&self) -> T {
+        self.a.rolling_radius() + self.b.rolling_radius()
+    }
+    fn extent(&self) -> T {
+        let (a, b) = (self.a.extent(), self.b.extent());
+        if_known(&[a, b], a + b)
+    }
+    fn error(&self) -> T {
+        pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dice::Dice;
+    use super::*;
+    use crate::support::Points;
+
+    #[test]
+    fn sums_and_differences_agree_with_all_pairs() {
+        let mut dice = Dice(8);
+        let a: Vec<[f64; 3]> = (0..9).map(|_| dice.vector().into()).collect();
+        let b: Vec<[f64; 3]> = (0..7).map(|_| dice.vector().into()).collect();
+        let (pa, pb) = (Points::new(&a).unwrap(), Points::new(&b).unwrap());
+        let (sum, difference) = (Sum::new(&pa, &pb), Difference::new(&pa, &pb));
+        for _ in 0..200 {
+            let u = dice.vector();
+            let all = |sign: f64| {
+                let pair = |x: &[f64; 3]| {
+                    b.iter().map(|y| (Vector::from(*x) + Vector::from(*y) * sign).dot(&u)).fold(f64::MIN, f64::max)
+                };
+                a.iter().map(pair).fold(f64::MIN, f64::max)
+            };
+            assert!((sum.support(&u).unwrap().dot(&u) - all(1.0)).abs() < 1e-15 * 10.0);
+            let (p, witness) = difference.support_with_witness(&u).unwrap();
+            assert!((p.dot(&u) - all(-1.0)).abs() < 1e-15 * 10.0);
+            assert_eq!(witness, pa.support(&u).unwrap());
+            assert_eq!(p, difference.exhaustive(&u).unwrap());
+        }
+    }
+}
