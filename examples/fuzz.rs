@@ -399,7 +399,7 @@ fn fuzz_pair(dice: &mut Dice) {
         ledger.add(f64::NEG_INFINITY, upper.hi + BLUR * size, "search");
         if let (Some(ha), Some(hb)) = (hull_of(&a), hull_of(&b)) {
             let exact = signed_depth(&ha, &hb).depth.hi;
-            let blur = BLUR * size + 4e-16 * exact.abs();
+            let blur = BLUR * size + 1e-13 * exact.abs();
             ledger.add(exact - blur, exact + blur, "exact");
         }
         let Some((depth, n)) = found else { return };

@@ -12,7 +12,8 @@ pub enum Outcome {
     Above,
     /// Stopped early: d < the threshold.
     Below,
-    /// The origin is outside A: `upper` < 0, and the bracket is that of minus the Euclidean distance.
+    /// The origin is outside A: `upper` < 0, and the bracket is that of minus the Euclidean distance. It is wider than asked for when
+    /// an iteration limit or the scalar type ended the search for the distance.
     Separated,
     /// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
     Touching,
@@ -63,6 +64,8 @@ pub struct Answer<T, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stop {
     Met,
+    /// The origin is certainly outside.
+    Outside,
     Rounding,
     Above,
     Below,
@@ -73,8 +76,8 @@ pub(crate) enum Stop {
 }
 
 impl Stop {
-    /// The outcome, given the final bracket and whether it meets the tolerance.
-    pub(crate) fn outcome<T: Real>(self, lower: T, upper: T, met: bool) -> Outcome {
+    /// The outcome, given the final bracket, whether it meets the tolerance, and whether it cannot be told from zero.
+    pub(crate) fn outcome<T: Real>(self, lower: T, upper: T, met: bool, at_zero: bool) -> Outcome {
         let zero = T::zero();
         match self {
             Stop::Failed(_) => Outcome::SupportFailed,
@@ -82,9 +85,9 @@ impl Stop {
             Stop::Below => Outcome::Below,
             _ if upper < zero => Outcome::Separated,
             Stop::Flat if lower <= zero => Outcome::Degenerate,
-            Stop::Met | Stop::Rounding if lower <= zero => Outcome::Touching,
+            Stop::Met | Stop::Rounding if at_zero => Outcome::Touching,
             _ if met && lower > zero => Outcome::Converged,
-            Stop::Met | Stop::Rounding | Stop::Flat => Outcome::Precision,
+            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Flat => Outcome::Precision,
             Stop::Capacity => Outcome::Capacity,
             Stop::Iterations => Outcome::Iterations,
         }

@@ -24,23 +24,29 @@
 //! ```
 //!
 //! and neither the accuracy of n_F nor the convexity of the surface is used: a bad normal or a wrong visibility decision makes
-//! the bound loose, not false. (Equality holds when n_F is exact, eq. 23.) The computed e_F is off by at most
-//! (2N + 4) u R, which is taken off each of them. The vertices are off A by at most e, which costs e for a ball and, for
-//! another Q, the factor (1 - e / ρ) with ρ the inradius min e_F of the surface: h_A(u) >= h_V(u) - e |u|
-//! and |u| <= h_V(u) / ρ.
+//! the bound loose, not false. (Equality holds when n_F is exact, eq. 23.)
+//!
+//! Rounding: the computed e_F is off by at most (2N + 4) u R, and the vertices are off A by at most e; together m. If
+//! λ h_Q(n_F) + m < e_F for all F, then λQ + mB, convex and around the origin, lies inside the true surface, so
+//! h_V(u) >= λ h_Q(u) + e |u| and h_A(u) >= h_V(u) - e |u| >= λ h_Q(u). Hence, provided that all e_F > m,
+//!
+//! ```text
+//! d_Q(A) >= min over F of (e_F - m) / h_Q(n_F)
+//! ```
 //!
 //! That the surface winds around the origin is not taken for granted: slivers can fold over. Let c be the centroid of the first
-//! simplex, and let every facet F ever made satisfy n.c < e_F by more than rounding. Then
+//! simplex as it was computed, and let every facet F ever made satisfy n.c < e_F by more than (3N + 8) u R, the
+//! rounding of c, of both products and of the length of n.
 //!
-//! 1. c keeps a distance from all facets of the first simplex, so it lies inside, and the surface winds around it once;
-//! 2. a point p is inserted over facets F with n.p > e_F, so conv(F, p) lies above e_F and c is not in it: replacing
-//!    F by the cone of p does not change the winding around c;
-//! 3. at the end all e_F > 0, so the segment from c to the origin lies beneath every facet and crosses none:
+//! 1. The exact centroid lies inside the first simplex, and the segment from it to c is shorter than the distance of c from any
+//!    facet: c lies inside too, and the surface winds around it once.
+//! 2. A point p is inserted over facets F with n.p > e_F (by more than rounding), so conv(F, p) lies above e_F and c is
+//!    not in it: replacing F by the cone of p does not change the winding around c.
+//! 3. At the end all e_F > m, so the segment from c to the origin lies beneath every facet and crosses none:
 //!    the surface winds around the origin once as well.
 //!
-//! A set so thin that 1. or 2. cannot be shown in the arithmetic at hand gets the weaker bound:
-//!
-//! when the origin is not certainly inside, it is minus the norm of the point of conv V nearest to it.
+//! Where this cannot be shown (the origin is outside or on the boundary, or the set is too thin for the arithmetic at hand), the lower bound
+//! is minus the norm of the point of conv V nearest to the origin.
 //!
 //! A ball term r of A is added to both sides (Euclidean Q only; there h(core + rB) = h(core) + r |n|).
 
@@ -60,7 +66,7 @@ pub struct Bracket<T> {
 pub struct Tolerance<T> {
     /// Width, in units of Q.
     pub absolute: T,
-    /// Width as a share of the larger end's size.
+    /// Width as a share of the smaller end's size.
     pub relative: T,
 }
 
@@ -97,8 +103,11 @@ impl<T: Real> Bounds<T> {
     /// A bound rounded away from the bracket, after a division by h_Q.
     #[inline]
     fn outward(value: T, up: bool) -> T {
-        let slack = value.abs() * (T::count(8) * T::ROUNDOFF);
-        if up { value + slack } else { value - slack }
+        // At most 10 roundings lie between the lengths and this value: the sums, the quotient or the product with
+        // an inverse (2), a key and back (4), and the slack's own.
+        let slack = value.abs() * (T::count(11) * T::ROUNDOFF);
+        let moved = if up { value + slack } else { value - slack };
+        moved.at_least(-T::HUGE).at_most(T::HUGE)
     }
 
     /// Upper bound from a support value of the core along a unit normal, for a ball of radius 1 / `per_ball`.

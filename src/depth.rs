@@ -300,6 +300,9 @@ impl<T: Real> Solver<'_, T, 3> {
     /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact.
     /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
     pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
+        if !finite(&a.translation) || !finite(&b.translation) {
+            return Depth::failed(Failure(NOT_FINITE));
+        }
         let mut pair = match Pair::new(a, b) {
             Ok(pair) => pair,
             Err(failure) => return Depth::failed(failure),

@@ -85,14 +85,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         options: Options<T, N>,
     ) -> (Self, Result<(), Failure>) {
         let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
-        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
-        let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
         let ball = q.ball_radius();
+        let per_ball = T::one() / ball.unwrap_or(T::one());
+        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
+        let sane = sane && per_ball.finite() && per_ball > T::zero();
+        let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
         let query = Query {
             a,
             q,
             ball,
-            per_ball: T::one() / ball.unwrap_or(T::one()),
+            per_ball,
             gauge_error,
             extent,
             bounds: Bounds { support_error, radius, dimension: N, unknown_extent: !(extent > T::zero()) },
@@ -298,15 +300,13 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// The same for any Q, from (offset, key) of all facets of the surface.
     pub fn lower_from_facets(&self, facets: impl Iterator<Item = (T, T)>) -> Option<T> {
         let margin = self.margin();
-        let rounding = margin - self.bounds.support_error;
         let (mut inradius, mut least) = (T::HUGE, T::HUGE);
         for (offset, key) in facets {
-            // (e - rounding) / h, from e and e / h.
-            inradius = inradius.at_most(offset - rounding);
-            least = least.at_most(key - key * (rounding / offset));
+            // (e - m) / h, from e and e / h.
+            inradius = inradius.at_most(offset);
+            least = least.at_most(key - key * (margin / offset));
         }
-        let shrink = T::one() - self.bounds.support_error / inradius - T::count(12) * T::ROUNDOFF;
-        (inradius > margin).then(|| least * shrink)
+        (inradius > margin).then(|| least * (T::one() - T::count(16) * T::ROUNDOFF))
     }
 
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
@@ -357,15 +357,21 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.exhaustive = true;
         let direction = self.direction;
         self.support_calls = self.support_calls.saturating_add(1);
-        let height = direction.dot(&self.a.exhaustive(&direction)?) * self.scale;
-        if !height.finite() {
+        let point = self.a.exhaustive(&direction)? * self.scale;
+        let squared = point.dot(&point);
+        if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
+        }
+        let height = direction.dot(&point);
+        if squared > self.reach * self.reach {
+            self.reach = squared.root();
         }
         if height <= self.height {
             return Ok(true);
         }
-        self.height = height;
-        self.ratio = (height + self.bounds.radius) / self.gauge;
+        // The shortcut was wrong: what it said is forgotten.
+        (self.height, self.ratio, self.apart) = (T::HUGE, T::HUGE, false);
+        self.note(&direction, height)?;
         Ok(false)
     }
 
@@ -385,7 +391,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             }
         };
         let upper = self.upper();
-        let met = self.is_met(&Bracket { lower, upper });
+        let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
+        let met = known && self.is_met(&Bracket { lower, upper });
         // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
         let stop = match (stop, self.options.threshold) {
             (Stop::Failed(code), _) => Stop::Failed(code),
@@ -394,7 +401,10 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             (Stop::Above | Stop::Below, _) => Stop::Rounding,
             (stop, _) => stop,
         };
-        let outcome = stop.outcome(lower, upper, met);
+        // Both ends within rounding of zero, in the units of A.
+        let blur = self.margin() * T::count(64) * self.per_ball;
+        let at_zero = lower <= T::zero() && (met || (upper <= blur && lower >= -blur));
+        let outcome = stop.outcome(lower, upper, met, at_zero);
         witness.rescale(T::one() / self.scale);
         Answer {
             outcome,

@@ -57,13 +57,16 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
+        let mut floor = None;
         if query.bounds.radius > T::zero() {
             match self.approach(&mut query, &first) {
-                Ok((stop, near)) if !near.inside || stop == Stop::Iterations => {
-                    let lower = query.lower_from_distance(near.distance);
-                    return query.answer(stop, lower, near.simplex, &self.polytope);
+                Ok((stop, near)) => {
+                    let bracket = Bracket { lower: query.lower_from_distance(near.distance), upper: query.upper() };
+                    if stop != Stop::Rounding || query.is_met(&bracket) {
+                        return query.answer(stop, bracket.lower, near.simplex, &self.polytope);
+                    }
+                    floor = Some(near);
                 }
-                Ok(_) => {}
                 Err(failure) => return self.give_up(&mut query, failure),
             }
         }
@@ -73,7 +76,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             Err(failure) => Err(failure),
         };
         match expanded {
-            Ok(expanded) => self.conclude(&mut query, expanded),
+            Ok(expanded) => self.conclude(&mut query, expanded, floor),
             Err(failure) => self.give_up(&mut query, failure),
         }
     }
@@ -103,7 +106,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             }
             let (vertex, height) = query.support(&normal)?;
             if query.is_outside(height) {
-                return end(Stop::Met);
+                if !self.confirm(query)? {
+                    continue;
+                }
+                return end(Stop::Outside);
             }
             let tolerance = self.polytope.resolution();
             // On the boundary of A, as far as arithmetic can tell?
@@ -166,9 +172,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         while let Some(index) = self.polytope.next_fresh() {
             let Some(facet) = self.polytope.facet(index) else { break };
             let key = query.key(&facet.normal, facet.offset)?;
-            let matters = key < query.ratio();
-            self.polytope.set_key(index, key, matters);
-            if !matters {
+            if !self.polytope.set_key(index, key, key < query.ratio()) {
                 query.skip(key);
             }
         }
@@ -182,13 +186,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         while start.missing() > 0 {
             let direction = start.direction();
             let (mut vertex, height) = query.support(&direction)?;
-            if query.is_outside(height) && query.bounds.radius == T::zero() {
-                return Ok(Some(Stop::Met));
+            if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
+                return Ok(Some(Stop::Outside));
             }
             if start.progress(&direction, &vertex.point) < query.reach() * T::of(0.01) {
                 let (other, height) = query.support(&-direction)?;
-                if query.is_outside(height) && query.bounds.radius == T::zero() {
-                    return Ok(Some(Stop::Met));
+                if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
+                    return Ok(Some(Stop::Outside));
                 }
                 if start.progress(&direction, &other.point) > start.progress(&direction, &vertex.point) {
                     vertex = other;
@@ -238,7 +242,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     /// Turns the state of the polytope into an answer.
-    fn conclude(&mut self, query: &mut Query<'_, T, N>, expanded: Expanded<T>) -> Answer<T, N> {
+    fn conclude(
+        &mut self,
+        query: &mut Query<'_, T, N>,
+        expanded: Expanded<T>,
+        floor: Option<Nearest<T, N>>,
+    ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
         if !apart && self.polytope.peak_facets() > 0 {
@@ -269,12 +278,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 Err(failure) => return self.give_up(query, failure),
             }
         }
-        self.lower_by_vertices(query, stop)
+        self.lower_by_vertices(query, stop, floor)
     }
 
-    /// For a Q that is not a ball the error of A's support function counts in proportion to the polytope's inradius, which
-    /// expansion towards a few directions of Q can leave small. Where that is what keeps the bracket open, the facets
-    /// nearest to the origin are pushed out too.
+    /// For a Q that is not a ball, expansion towards a few directions of Q can leave facets so near to the origin that
+    /// the margin swallows them, and the bracket open. Then the nearest facets are pushed out too.
     fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<(), Failure> {
         if query.ball.is_some() || stop != Stop::Rounding {
             return Ok(());
@@ -331,11 +339,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         simplex
     }
 
-    /// An answer whose lower bound comes from the stored vertices alone, without asking A again.
-    fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop) -> Answer<T, N> {
+    /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
+    /// the point that was nearest before.
+    fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
         let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
-        let first = query.first_direction();
-        match cloud.nearest(&first) {
+        let stored = cloud.nearest(&query.first_direction());
+        match stored.into_iter().chain(floor).reduce(|a, b| if b.distance < a.distance { b } else { a }) {
             Some(near) => {
                 let lower = query.lower_from_distance(near.distance);
                 query.answer(stop, lower, near.simplex, &self.polytope)
@@ -345,6 +354,6 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
-        self.lower_by_vertices(query, Stop::Failed(failure.0))
+        self.lower_by_vertices(query, Stop::Failed(failure.0), None)
     }
 }

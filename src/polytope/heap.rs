@@ -1,9 +1,8 @@
 //! The priority: which facet bounds d_Q(V) now (eq. 21).
 //!
 //! A binary min-heap of (key, facet) in borrowed memory. Facets die without telling the heap; an entry whose facet
-//! is dead, or has been recycled under another key, is stale and is skipped when it surfaces. A live facet
-//! has at most one valid entry, so as many entries as there are facets always suffice: when the heap is full, the stale
-//! entries are swept out.
+//! is dead, or has been recycled under another key, is stale and is skipped when it surfaces. When the heap is full, the
+//! stale entries are swept out; as many entries as there are facets are enough, but for ties between a facet and the one recycled in its place.
 
 use super::{Facet, Index};
 use crate::scalar::Real;
@@ -37,17 +36,18 @@ impl<'a, T: Real> Heap<'a, T> {
         self.len = 0;
     }
 
-    /// Adds a live facet; `facets` tells stale entries apart when room must be made.
-    pub fn push<const N: usize>(&mut self, key: T, facet: Index, facets: &[Facet<T, N>]) {
+    /// Adds a live facet; `facets` tells stale entries apart when room must be made. False when there is none: a facet
+    /// recycled under the key that it had before counts twice.
+    pub fn push<const N: usize>(&mut self, key: T, facet: Index, facets: &[Facet<T, N>]) -> bool {
         if self.len == self.entries.len() {
             self.sweep(facets);
         }
         let entry = Entry { key, facet };
-        if let Some(last) = self.entries.get_mut(self.len) {
-            *last = entry;
-            self.len += 1;
-            self.sift_up(self.len - 1, entry);
-        }
+        let Some(last) = self.entries.get_mut(self.len) else { return false };
+        *last = entry;
+        self.len += 1;
+        self.sift_up(self.len - 1, entry);
+        true
     }
 
     /// Removes and returns the live facet with the smallest key.

@@ -1,7 +1,7 @@
 //! Propositions 3 and 4: which facets a new point eliminates, and which it makes.
 
 use super::{Facet, Index, NONE, Polytope, State};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 use crate::simplex::Vertex;
 
 /// What became of an insertion.
@@ -26,11 +26,21 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Adds a point that facet `from` sees. A facet is visible when the point is more than `tolerance` above
     /// its plane; ties count as not visible, which drops nothing but rounding.
     ///
-    /// `None` means that the bookkeeping contradicts itself: the caller must stop (it never happened; the
-    /// lower bound that was known before stays true).
+    /// `None` means that the bookkeeping contradicts itself (it never happened): the surface proves nothing any more, and
+    /// the caller must stop.
     pub fn insert(&mut self, from: Index, vertex: Vertex<T, N>, tolerance: T) -> Option<Insertion> {
+        let inserted = self.try_insert(from, vertex, tolerance);
+        self.sound &= inserted.is_some();
+        inserted
+    }
+
+    fn try_insert(&mut self, from: Index, vertex: Vertex<T, N>, mut tolerance: T) -> Option<Insertion> {
         if self.vertex_count >= self.vertices.len() {
             return Some(Insertion::Full);
+        }
+        // Heights of a point farther out than all others are rounded more coarsely.
+        if vertex.point.dot(&vertex.point) > self.reach_squared {
+            tolerance = tolerance.at_least(T::count(8 * N) * T::ROUNDOFF * norm(&vertex.point));
         }
         let visible = self.mark_visible(from, &vertex.point, tolerance)?;
         if visible.horizon > self.free_slots() || visible.count == self.live {

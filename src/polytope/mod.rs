@@ -253,14 +253,12 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         Some(facet)
     }
 
-    /// Gives a facet its key; with `queue`, it becomes a candidate for [`pop_lowest`](Self::pop_lowest).
-    pub fn set_key(&mut self, facet: Index, key: T, queue: bool) {
+    /// Gives a facet its key; with `queue`, it becomes a candidate for [`pop_lowest`](Self::pop_lowest). True when it is one.
+    pub fn set_key(&mut self, facet: Index, key: T, queue: bool) -> bool {
         if let Some(f) = self.facet_mut(facet) {
             f.key = key;
         }
-        if queue {
-            self.heap.push(key, facet, self.facets);
-        }
+        queue && self.heap.push(key, facet, self.facets)
     }
 
     /// Queues all live facets with a key below `ceiling`, and returns the lowest key of the others.
@@ -273,9 +271,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             if !facet.is_live() {
                 continue;
             }
-            if key < ceiling {
-                self.heap.push(key, index, self.facets);
-            } else {
+            if key >= ceiling || !self.heap.push(key, index, self.facets) {
                 lowest = Some(lowest.map_or(key, |least| least.at_most(key)));
             }
         }

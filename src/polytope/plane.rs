@@ -31,9 +31,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         if self.is_beneath(&normal, offset) { Some((normal, offset)) } else { self.turn_away(vertices, normal, offset) }
     }
 
-    /// Is the centre certainly beneath the facet with this plane? The rounding of two products and of the normal's length.
+    /// Is the centre certainly beneath the facet with this plane? (Module `bounds`.)
     fn is_beneath(&self, normal: &Vector<T, N>, offset: T) -> bool {
-        offset - normal.dot(&self.center) > self.reach * (T::count(2 * N + 4) * T::ROUNDOFF)
+        offset - normal.dot(&self.center) > self.reach * (T::count(3 * N + 8) * T::ROUNDOFF)
     }
 
     /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that

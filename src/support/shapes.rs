@@ -46,10 +46,10 @@ pub(crate) fn magnitude<T: Real>(x: T) -> T {
     x.at_least(-x)
 }
 
-/// `size` with the sign of `x` (plus for zero), without a branch.
+/// `size` >= 0 with the sign bit of `x`: bit masks only.
 #[inline(always)]
 pub(crate) fn signed<T: Real>(size: T, x: T) -> T {
-    if x < T::zero() { -size } else { size }
+    size.copysign(x)
 }
 
 /// max |x_i|.

@@ -8,7 +8,7 @@
 
 use super::super::generic::{aligned, ask, coordinates, lengths, shared};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
+    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
 use crate::Body;
@@ -241,8 +241,16 @@ pub(super) unsafe fn arguments<'a, S>(
     direction: *const f32,
     point: *mut f32,
 ) -> Check<(&'a S, &'a Vector<f32, 3>, *mut [f32; 3])> {
-    // SAFETY: the caller's promise; a vector is its numbers in a row.
-    unsafe { Ok((shared(user.cast::<S>().cast_const())?, shared(direction.cast())?, room(point)?)) }
+    let user = user.cast::<S>().cast_const();
+    if user.is_null() || direction.is_null() || point.is_null() {
+        return Err(QDIST_ERROR_NULL);
+    }
+    // One branch for all three.
+    if !(user.is_aligned() & direction.is_aligned() & point.is_aligned()) {
+        return Err(QDIST_ERROR_ALIGNMENT);
+    }
+    // SAFETY: neither NULL nor misaligned, and the caller's promise; a vector is its numbers in a row.
+    unsafe { Ok((&*user, &*direction.cast(), point.cast())) }
 }
 
 /// Room for a point; the pointer is checked, the memory not yet written.
