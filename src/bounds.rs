@@ -103,9 +103,9 @@ impl<T: Real> Bounds<T> {
     /// A bound rounded away from the bracket, after a division by h_Q.
     #[inline]
     fn outward(value: T, up: bool) -> T {
-        // At most 10 roundings lie between the lengths and this value: the sums, the quotient or the product with
-        // an inverse (2), a key and back (4), and the slack's own.
-        let slack = value.abs() * (T::count(11) * T::ROUNDOFF);
+        // Four roundings lie between the lengths and this value: two sums, the inverse of Q's size and the product with
+        // it (or one quotient); one more is this function's own.
+        let slack = value.abs() * (T::count(6) * T::ROUNDOFF);
         let moved = if up { value + slack } else { value - slack };
         moved.at_least(-T::HUGE).at_most(T::HUGE)
     }

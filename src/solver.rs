@@ -162,7 +162,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return None;
         }
         match query.ball {
-            Some(radius) => query.lower_from_offset(key * radius - query.bounds.radius),
+            Some(radius) => {
+                // Back from the key to the offset, rounded down: four roundings there and back.
+                let whole = key * radius;
+                query.lower_from_offset(whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF))
+            }
             None => query.lower_from_facets(self.polytope.facets().map(|f| (f.offset, f.key))),
         }
     }

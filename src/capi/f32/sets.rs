@@ -91,6 +91,11 @@ impl qdist_set_f32 {
         // SAFETY: transparent.
         Ok(unsafe { &*core::ptr::from_ref(self).cast() })
     }
+
+    /// The rounding error that the set states, or the default in dimension `n`.
+    pub(super) fn stated_error(&self, n: usize) -> f32 {
+        if self.error > 0.0 { self.error } else { f32::count(16 * n) * f32::ROUNDOFF * self.extent }
+    }
 }
 
 /// A set that has passed the checks, where it lies, as a [`Support`].
@@ -118,13 +123,6 @@ impl<const N: usize> Support<f32, N> for CheckedSet {
     }
     fn error(&self) -> f32 {
         self.0.stated_error(N)
-    }
-}
-
-impl qdist_set_f32 {
-    /// The rounding error that the set states, in words or by default.
-    pub(super) fn stated_error(&self, n: usize) -> f32 {
-        if self.error > 0.0 { self.error } else { f32::count(16 * n) * f32::ROUNDOFF * self.extent }
     }
 }
 

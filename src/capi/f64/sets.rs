@@ -90,6 +90,11 @@ impl qdist_set_f64 {
         // SAFETY: transparent.
         Ok(unsafe { &*core::ptr::from_ref(self).cast() })
     }
+
+    /// The rounding error that the set states, or the default in dimension `n`.
+    pub(super) fn stated_error(&self, n: usize) -> f64 {
+        if self.error > 0.0 { self.error } else { f64::count(16 * n) * f64::ROUNDOFF * self.extent }
+    }
 }
 
 /// A set that has passed the checks, where it lies, as a [`Support`].
@@ -117,13 +122,6 @@ impl<const N: usize> Support<f64, N> for CheckedSet {
     }
     fn error(&self) -> f64 {
         self.0.stated_error(N)
-    }
-}
-
-impl qdist_set_f64 {
-    /// The rounding error that the set states, in words or by default.
-    pub(super) fn stated_error(&self, n: usize) -> f64 {
-        if self.error > 0.0 { self.error } else { f64::count(16 * n) * f64::ROUNDOFF * self.extent }
     }
 }
 
