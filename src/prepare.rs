@@ -20,7 +20,8 @@ pub enum GraphError {
     Flat,
     /// The solver needs as many vertices as the hull has, and about 2 facets for each and some to spare; neither can exceed 65,535.
     Capacity,
-    /// The words are fewer than the graph needs; [`graph_len`](crate::support::graph_len) always suffices.
+    /// The words are fewer than the graph needs, or its lists have more than 262,140 words (above about 26,000 vertices); below that
+    /// [`graph_len`](crate::support::graph_len) always suffices.
     Words,
 }
 

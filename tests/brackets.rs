@@ -294,7 +294,7 @@ fn pairs<T: Real>() {
         let (sa, sb) = (Points::new(&ta).unwrap(), Points::new(&tb).unwrap());
         let a = Body::new(&sa, Matrix3::identity(), Vector3::from(at_a.map(T::of))).unwrap();
         let b = Body::new(&sb, Matrix3::identity(), Vector3::from(at_b.map(T::of))).unwrap();
-        let mut run = |options: Options<T, 3>, vertices: usize, facets: usize| {
+        let run = |options: Options<T, 3>, vertices: usize, facets: usize| {
             let mut memory = Memory::new::<T, 3>(vertices, facets);
             let s = Seen::from(&memory.solver::<T, 3>().depth(&a, &b, &options));
             let tell = format!("{round} {vertices} {facets} {options:?}: d = {d:e} {s:?}");

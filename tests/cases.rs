@@ -162,7 +162,7 @@ impl Verdict {
 
     fn normals(&mut self, file: &Path, reports: &[Report]) {
         for r in reports {
-            if let Some(angle) = r.angle.filter(|&a| !(a <= 1e-3)) {
+            if let Some(angle) = r.angle.filter(|&a| a > 1e-3 || a.is_nan()) {
                 self.0.push(format!("{} {}: normal off by {angle:.2e} rad", name(file), r.id));
             }
         }

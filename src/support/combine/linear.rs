@@ -3,7 +3,7 @@
 use nalgebra::SMatrix;
 
 use super::{if_known, mapped, transposed};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 use crate::support::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled, unit};
 use crate::support::{Failure, Support};
 
@@ -14,9 +14,8 @@ use crate::support::{Failure, Support};
 ///
 /// `error`: with F >= |M| (the Frobenius norm), r the radius and E + r the reach of the inner set: as for
 /// [`Rigid`](super::Rigid), `3 N F u (E + r)` for M^T u and the product M y, `(N/2 + 5) u (E + r) F` for the unit vector and the sum y, `2 u` of the
-/// result: `F e + (4 N + 8) u (F (E + r) + |t|)`. When E is unknown, F E is replaced by |t|, and the solver's margin
-/// covers the rest only as far as M is well conditioned: a flattened set of large coordinates can look small. Give
-/// your own shape an `extent` before you flatten it.
+/// result: `F e + (4 N + 8) u (F (E + r) + |t|)`. When E is unknown, 2 N support calls along the axes measure it,
+/// each time `error` is asked for.
 ///
 /// ```
 /// use nalgebra::SMatrix;
@@ -87,11 +86,28 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Linear<S, T, N
         if_known(&[inner], self.stretch * (inner + self.shape.radius()) + self.shift)
     }
     fn error(&self) -> T {
-        let (inner, radius) = (self.shape.extent(), self.shape.radius());
-        let core = if inner > T::zero() { self.stretch * inner } else { self.shift };
-        let reach = core + self.stretch * radius + self.shift;
-        above(self.stretch * self.shape.error() + T::count(4 * N + 8) * T::ROUNDOFF * reach, N)
+        let (known, radius) = (self.shape.extent(), self.shape.radius());
+        let inner = if known > T::zero() { known } else { measured_extent(&self.shape) };
+        // What `Support::error` would be by default, had the shape known its extent.
+        let own = if known > T::zero() { T::zero() } else { T::count(16 * N) * T::ROUNDOFF * inner };
+        let reach = self.stretch * (inner + radius) + self.shift;
+        above(self.stretch * self.shape.error().at_least(own) + T::count(4 * N + 8) * T::ROUNDOFF * reach, N)
     }
+}
+
+/// Half the diagonal of the box that support calls along the axes draw around the core: an upper bound of |x|. Infinite when
+/// a call fails.
+fn measured_extent<T: Real, const N: usize>(shape: &impl Support<T, N>) -> T {
+    let mut corner = Vector::<T, N>::zeros();
+    for i in 0..N {
+        for sign in [T::one(), -T::one()] {
+            let mut axis = Vector::<T, N>::zeros();
+            axis[i] = sign;
+            let Ok(point) = shape.support(&axis) else { return T::one() / T::zero() };
+            corner[i] = corner[i].at_least(point[i].abs());
+        }
+    }
+    norm(&corner)
 }
 
 #[cfg(test)]

@@ -112,6 +112,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     fn extent(&self) -> T {
         self.shape.extent()
     }
+    fn center(&self) -> Option<(Vector<T, N>, T)> {
+        self.shape.center()
+    }
     fn symmetry(&self) -> Symmetry {
         self.shape.symmetry()
     }
