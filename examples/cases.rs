@@ -1,4 +1,5 @@
-//! Runs case files: brackets against references, iterations and time.
+//! Runs case files: brackets against references, iterations and time:
+//! `cargo run --release --features std --example cases -- [-v] [-f32] FILE...`
 use qdist::support::{Hull, Support, graph_len};
 use qdist::{Options, Outcome, Real, Workspace};
 use std::collections::BTreeMap;
@@ -71,7 +72,7 @@ fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
         bad += !ok as usize;
         converged += conv as usize;
         normals += normal_ok as usize;
-        if verbose && (!ok || !conv || !normal_ok) || r.outcome == Outcome::Precision && verbose {
+        if verbose && (!ok || !conv || !normal_ok || r.outcome == Outcome::Precision) {
             println!(
                 "  {} {:?} ref {:e} lo-ref {:e} up-ref {:e} size {:.3e} it {} v {} f {} ok {} conv {} normal {} us {:.2}",
                 case.id,

@@ -16,9 +16,6 @@
 //!
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 
-// `!(x <= y)` must hold for NaN; indices say which axis.
-#![allow(clippy::neg_cmp_op_on_partial_ord, clippy::needless_range_loop)]
-
 #[path = "../tests/common/mod.rs"]
 mod common;
 

@@ -84,10 +84,6 @@
 //! * W. Blaschke, *Kreis und Kugel*, 1916 (balls that roll inside convex bodies).
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![warn(missing_docs)]
-// Loops over constant ranges index arrays of the same constant length: no bound is checked, and none can fail.
-#![allow(clippy::needless_range_loop)]
-// `!(x > 0)` is written where it must hold for NaN.
-#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 pub mod answer;
 pub mod bounds;
