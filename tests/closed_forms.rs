@@ -353,7 +353,7 @@ fn boundaries<T: Real, const N: usize>() {
             "from the boundary inwards",
             &set,
             &Segment::new(vector::<T, N>(inwards)).unwrap(),
-            { (0..N).map(|i| if i < touched { 4.0 } else { (h[i] + t[i]) / inwards[i] }).fold(f64::MAX, f64::min) },
+            (0..N).map(|i| if i < touched { 4.0 } else { (h[i] + t[i]) / inwards[i] }).fold(f64::MAX, f64::min),
             Want::Truth,
         );
     }
