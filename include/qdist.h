@@ -472,6 +472,7 @@ typedef struct {
 } qdist_pair_f64;
 
 // The image of a set under x -> matrix * x + translation.
+// The set must state its extent, or QDIST_ERROR_ARGUMENT: without, the rounding of the map cannot be bounded.
 typedef struct {
     const qdist_set_f64 *set;
     // Row-major, `rows` x `columns`; any matrix.
@@ -605,7 +606,8 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
 /* =========================================================== QUERIES ===========================================================
  *
  * Every query returns a bracket: lower <= d <= upper holds whatever the outcome, rounding included. It is as narrow as
- * the options ask for when the outcome is QDIST_CONVERGED, QDIST_SEPARATED or QDIST_TOUCHING. An end that is not known is
+ * the options ask for when the outcome is QDIST_CONVERGED, and that or as narrow as rounding allows for QDIST_TOUCHING; with
+ * QDIST_SEPARATED it may be wider when an iteration limit ended the search. An end that is not known is
  * -DBL_MAX or DBL_MAX (float: FLT_MAX).
  *
  * The result is written when the call works, or when only a callback failed; otherwise it is left as it was. */

@@ -16,7 +16,7 @@ use crate::qset::Ball;
 use crate::query::{Options, Query};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
-use crate::support::{Failure, Support, Symmetry};
+use crate::support::{Failure, Support, Symmetry, one_by_one};
 use nalgebra::SMatrix;
 
 /// A 3 x 3 matrix.
@@ -114,9 +114,8 @@ impl<'a, T: Real> Body<'a, T> {
     fn farthest(&self, u: &Vector<T, 3>, anchor: &Anchor<T>, exhaustive: bool) -> Result<Vector<T, 3>, Failure> {
         let local = self.rotation.tr_mul(u);
         let point = if exhaustive { self.shape.exhaustive(&local) } else { self.shape.support(&local) };
-        // By coordinates, as the shape has stored them: wider loads would have to wait for its narrower stores.
         let [x, y, z] = match &point {
-            Ok(p) => [p.x, p.y, p.z],
+            Ok(p) => one_by_one(p).into(),
             Err(failure) => return Err(*failure),
         };
         let [x, y, z] = match &anchor.center {

@@ -339,6 +339,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.tolerance(T::one()).met(bracket)
     }
 
+    /// Is this bracket about as narrow as rounding allows?
+    pub fn is_tight(&self, bracket: &Bracket<T>) -> bool {
+        bracket.upper - bracket.lower <= self.margin() * T::count(64) * self.per_ball
+    }
+
     /// Counts an iteration; true when the limit is reached.
     pub fn exhausted(&mut self) -> bool {
         if self.options.max_iterations != 0 && self.iterations >= self.options.max_iterations {
@@ -401,9 +406,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             (Stop::Above | Stop::Below, _) => Stop::Rounding,
             (stop, _) => stop,
         };
-        // Both ends within rounding of zero, in the units of A.
-        let blur = self.margin() * T::count(64) * self.per_ball;
-        let at_zero = lower <= T::zero() && (met || (upper <= blur && lower >= -blur));
+        let at_zero = lower <= T::zero() && (met || self.is_tight(&Bracket { lower, upper }));
         let outcome = stop.outcome(lower, upper, met, at_zero);
         witness.rescale(T::one() / self.scale);
         Answer {

@@ -62,7 +62,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             match self.approach(&mut query, &first) {
                 Ok((stop, near)) => {
                     let bracket = Bracket { lower: query.lower_from_distance(near.distance), upper: query.upper() };
-                    if stop != Stop::Rounding || query.is_met(&bracket) {
+                    if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
                         return query.answer(stop, bracket.lower, near.simplex, &self.polytope);
                     }
                     floor = Some(near);

@@ -184,9 +184,14 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
 
     /// The facet whose plane is nearest to the origin, with its normal and offset.
     pub fn nearest_facet(&self) -> Option<(Index, Vector<T, N>, T)> {
+        let (index, f) = self.numbered_facets().reduce(|best, f| if f.1.offset < best.1.offset { f } else { best })?;
+        Some((index, f.normal, f.offset))
+    }
+
+    /// All live facets with their positions.
+    pub fn numbered_facets(&self) -> impl Iterator<Item = (Index, &Facet<T, N>)> {
         let numbered = self.facets.iter().take(self.facet_top).enumerate().filter(|(_, f)| f.is_live());
-        let (number, f) = numbered.reduce(|best, f| if f.1.offset < best.1.offset { f } else { best })?;
-        Some((Index::try_from(number).ok()?, f.normal, f.offset))
+        numbered.filter_map(|(number, f)| Some((Index::try_from(number).ok()?, f)))
     }
 
     /// The facet with the smallest key, queued or not.

@@ -36,7 +36,8 @@ pub use graph::{HullGraph, graph_len};
 pub(crate) use hull::List;
 pub use hull::{Hull, Points};
 #[cfg(feature = "capi")]
-pub(crate) use load::{alone, one_by_one};
+pub(crate) use load::alone;
+pub(crate) use load::one_by_one;
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
 #[cfg(feature = "capi")]
 pub(crate) use shapes::{check_numbers, check_sizes, near_unit};

@@ -7,7 +7,9 @@
 use super::super::generic::{
     MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, length, shared, tiny,
 };
-use super::super::status::{Check, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
+};
 use super::sets::{qdist_set_f32, room};
 use crate::scalar::Real;
 use core::ffi::c_void;
@@ -23,6 +25,7 @@ pub struct qdist_pair_f32 {
 }
 
 /// The image of a set under x -> matrix * x + translation.
+/// The set must state its extent, or QDIST_ERROR_ARGUMENT: without, the rounding of the map cannot be bounded.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_linear_f32 {
@@ -69,8 +72,11 @@ pub unsafe extern "C" fn qdist_set_linear_f32(set: *mut qdist_set_f32, map: *con
         coordinates(matrix)?;
         coordinates(shift)?;
         let stretch = norm(matrix);
-        let reach =
-            if inner.extent > 0.0 { length(stretch * (inner.extent + inner.radius) + norm(shift))? } else { 0.0 };
+        // Without an extent, the rounding of an ill-conditioned map could not be bounded.
+        if !(inner.extent > 0.0) {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
         let own = inner.stated_error(linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f32 as SupportFn<f32>);
         let made = qdist_set_f32 {

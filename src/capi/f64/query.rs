@@ -1,7 +1,8 @@
 //! QUERIES
 //!
 //! Every query returns a bracket: lower <= d <= upper holds whatever the outcome, rounding included. It is as narrow as
-//! the options ask for when the outcome is QDIST_CONVERGED, QDIST_SEPARATED or QDIST_TOUCHING. An end that is not known is
+//! the options ask for when the outcome is QDIST_CONVERGED, and that or as narrow as rounding allows for QDIST_TOUCHING; with
+//! QDIST_SEPARATED it may be wider when an iteration limit ended the search. An end that is not known is
 //! -DBL_MAX or DBL_MAX (float: FLT_MAX).
 //!
 //! The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
