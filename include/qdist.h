@@ -211,7 +211,7 @@ uint32_t qdist_version(void);
  * may be moved with its memory.
  *
  * Capacities: `max_vertices` bounds the points that a query may add, `max_facets` the facets at one time. In
- * dimension 3, facets = 2 * vertices - 4 suffices; in dimension 6 a hundred facets for a vertex is not
+ * dimension 3, facets = 2 * vertices suffices; in dimension 6 a hundred facets for a vertex is not
  * rare. When either is full the query ends with QDIST_CAPACITY and a bracket that is still true; results
  * say how much was used. */
 
@@ -612,7 +612,8 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  *
  * The result is written when the call works, or when only a callback failed; otherwise it is left as it was. */
 
-// How a query ends, and where it looks first. NULL stands for the defaults.
+// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
+// relative must not both be 0.
 typedef struct {
     // sizeof(qdist_options_f64).
     uint32_t struct_size;
@@ -645,7 +646,8 @@ typedef struct {
     double upper;
     // Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A.
     double normal[3];
-    // Witness points on A and B, in the world. point_a - point_b is depth * normal up to the tolerance: the points that touch
+    // Witness points on A and B, in the world. For QDIST_CONVERGED, QDIST_TOUCHING and QDIST_SEPARATED (elsewhere they only
+    // prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     // after B has been moved, or the nearest points of separated bodies.
     double point_a[3];
     double point_b[3];
@@ -655,7 +657,7 @@ typedef struct {
     uint32_t iterations;
     // Calls of each body's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done.
+    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
     uint32_t vertices_used;
     uint32_t facets_used;
     // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -682,7 +684,7 @@ typedef struct {
     uint32_t iterations;
     // Calls of A's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done.
+    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
     uint32_t vertices_used;
     uint32_t facets_used;
     // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.

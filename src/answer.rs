@@ -52,9 +52,9 @@ pub struct Answer<T, const N: usize> {
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,
-    /// Vertices used: a workspace with as many would have done.
+    /// Vertices used: a workspace with as many would have done, unless the run was cut short.
     pub vertices: usize,
-    /// Facets used at one time: a workspace with as many would have done.
+    /// Facets used at one time: a workspace with as many would have done, unless the run was cut short.
     pub facets: usize,
     /// The code of a [`Failure`](crate::support::Failure), else 0.
     pub failure: i32,

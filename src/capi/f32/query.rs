@@ -23,7 +23,8 @@ use crate::scalar::{Real, Vector};
 use crate::support::{alone, one_by_one};
 use crate::{Answer, Depth, Options, Outcome};
 
-/// How a query ends, and where it looks first. NULL stands for the defaults.
+/// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
+/// relative must not both be 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_options_f32 {
@@ -60,7 +61,8 @@ pub struct qdist_depth_f32 {
     pub upper: f32,
     /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A.
     pub normal: [f32; 3],
-    /// Witness points on A and B, in the world. point_a - point_b is depth * normal up to the tolerance: the points that touch
+    /// Witness points on A and B, in the world. For QDIST_CONVERGED, QDIST_TOUCHING and QDIST_SEPARATED (elsewhere they only
+    /// prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     /// after B has been moved, or the nearest points of separated bodies.
     pub point_a: [f32; 3],
     pub point_b: [f32; 3],
@@ -70,7 +72,7 @@ pub struct qdist_depth_f32 {
     pub iterations: u32,
     /// Calls of each body's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done.
+    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
     pub vertices_used: u32,
     pub facets_used: u32,
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -99,7 +101,7 @@ pub struct qdist_result_f32 {
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done.
+    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
     pub vertices_used: u32,
     pub facets_used: u32,
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.

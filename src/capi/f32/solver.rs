@@ -6,7 +6,7 @@
 //! may be moved with its memory.
 //!
 //! Capacities: `max_vertices` bounds the points that a query may add, `max_facets` the facets at one time. In
-//! dimension 3, facets = 2 * vertices - 4 suffices; in dimension 6 a hundred facets for a vertex is not
+//! dimension 3, facets = 2 * vertices suffices; in dimension 6 a hundred facets for a vertex is not
 //! rare. When either is full the query ends with QDIST_CAPACITY and a bracket that is still true; results
 //! say how much was used.
 
