@@ -174,16 +174,23 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         };
         let (point, witness) =
             if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
-        let squared = point.dot(&point);
+        self.see(&point)?;
+        let height = direction.dot(&point);
+        self.note(direction, height)?;
+        Ok((Vertex { point, witness }, height))
+    }
+
+    /// Refuses a point that is not finite, and lets the margin grow with its norm.
+    #[inline(always)]
+    fn see(&mut self, point: &Vector<T, N>) -> Result<(), Failure> {
+        let squared = point.dot(point);
         if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
         }
         if squared > self.reach * self.reach {
             self.reach = squared.root();
         }
-        let height = direction.dot(&point);
-        self.note(direction, height)?;
-        Ok((Vertex { point, witness }, height))
+        Ok(())
     }
 
     fn note(&mut self, direction: &Vector<T, N>, height: T) -> Result<(), Failure> {
@@ -363,14 +370,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let direction = self.direction;
         self.support_calls = self.support_calls.saturating_add(1);
         let point = self.a.exhaustive(&direction)? * self.scale;
-        let squared = point.dot(&point);
-        if !squared.finite() {
-            return Err(Failure(crate::NOT_FINITE));
-        }
+        self.see(&point)?;
         let height = direction.dot(&point);
-        if squared > self.reach * self.reach {
-            self.reach = squared.root();
-        }
         if height <= self.height {
             return Ok(true);
         }

@@ -268,13 +268,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations) {
             let first = if apart { query.direction } else { query.first_direction() };
             match self.approach(query, &first) {
+                // A walk that was cut short may know less than the vertices stored before it.
+                Ok((Stop::Iterations, near)) => return self.lower_by_vertices(query, Stop::Iterations, Some(near)),
                 Ok((end, near)) => {
-                    // A walk that was cut short may know less than the vertices stored before it.
-                    let stored = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
-                    let near = match stored.nearest(&first) {
-                        Some(found) if end == Stop::Iterations && found.distance < near.distance => found,
-                        _ => near,
-                    };
                     let stop = if stop == Stop::Flat && near.inside { stop } else { end };
                     let lower = query.lower_from_distance(near.distance);
                     return query.answer(stop, lower, near.simplex, &self.polytope);
