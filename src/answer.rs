@@ -23,10 +23,27 @@ pub enum Outcome {
     Capacity,
     /// The iteration limit is reached.
     Iterations,
+    /// The caller's deadline has passed.
+    Interrupted,
     /// A is flat and the origin lies in it: d is 0 for a full-dimensional Q. See [`Answer::dimension`].
     Degenerate,
     /// A support or gauge function failed, or returned values that are not finite.
     SupportFailed,
+}
+
+/// How a query was answered: what it is decides (module [`plan`](crate::solver)).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plan {
+    /// By the distance of the core from the origin: A has a ball term, and the origin is outside of what it is swept over.
+    Distance,
+    /// Two bodies on one axis: expansion in a plane through it.
+    Meridian,
+    /// Polytopal Q: one ray per vertex of Q, and no polytope.
+    Rays,
+    /// Expansion of one polytope.
+    Expansion,
+    /// The polytope outgrew the memory: expansion cone by cone.
+    Cones,
 }
 
 /// The result of a query.
@@ -43,6 +60,15 @@ pub struct Answer<T, const N: usize> {
     pub upper: T,
     /// Unit direction u that proves `upper`: h_A(u) / h_Q(u) <= upper. The weakest direction of A.
     pub direction: Vector<T, N>,
+    /// s_A(u), the point of A that is farthest along it (its ball term included).
+    pub support: Vector<T, N>,
+    /// h_Q(u). With `direction` and `support` it makes the gradient of d: see [`Answer::derivative`].
+    pub gauge: T,
+    /// Where the minimiser is known not to be unique (to the tolerance): another direction, more than 8 degrees away, that bounds d as
+    /// tightly. `None` says that none was met, not that there is none.
+    pub rival: Option<Vector<T, N>>,
+    /// How the query was answered.
+    pub plan: Plan,
     /// Evidence for `lower`: the facet (or the simplex nearest to the origin) that bounds it, with points of A, their
     /// witnesses and, for a Euclidean Q, the weights of its point nearest to the origin.
     pub witness: Simplex<T, N>,
@@ -56,8 +82,34 @@ pub struct Answer<T, const N: usize> {
     pub vertices: usize,
     /// Facets used at one time: a workspace with as many would have done, unless the run was cut short.
     pub facets: usize,
+    /// With [`Plan::Cones`]: cones searched in the last completed pass.
+    pub cones: u32,
+    /// With [`Plan::Cones`]: the most halvings of an orthant, of at most 192.
+    pub splits: u32,
     /// The code of a [`Failure`](crate::support::Failure), else 0.
     pub failure: i32,
+}
+
+impl<T: Real, const N: usize> Answer<T, N> {
+    /// The derivative of d with respect to a parameter of A, by the envelope theorem.
+    ///
+    /// d = min over u of max over a in A of u.a / h_Q(u). Where minimiser and maximiser change continuously, the first-order
+    /// change of d is that of u.a at both of them as they are,
+    ///
+    /// ```text
+    /// d' = Σ w_i (u . a_i') / h_Q(u),        a_i' = change of point a_i of A as the parameter changes
+    /// ```
+    ///
+    /// over the points a_i of A that touch λQ at one point with weights w_i: the `witness`. `change` is asked for a_i' at each of
+    /// its points. (Where A is smooth there, they are near `support`, and d' = u.s_A' / h_Q.)
+    ///
+    /// Exact up to about the square root of the relative gap of the bracket, because u and the points are. Where the minimiser is not unique
+    /// (`rival`), d has one-sided derivatives only: the least of those at all minimisers, in each sense.
+    pub fn derivative(&self, change: impl Fn(&Vector<T, N>) -> Vector<T, N>) -> T {
+        let along = |point: &Vector<T, N>| self.direction.dot(&change(point));
+        let sum = self.witness.corners.iter().fold(T::zero(), |sum, c| sum + along(&c.vertex.point) * c.weight);
+        sum / self.gauge
+    }
 }
 
 /// Why a run stopped.
@@ -71,6 +123,7 @@ pub(crate) enum Stop {
     Below,
     Capacity,
     Iterations,
+    Interrupted,
     Flat,
     Failed(i32),
 }
@@ -90,6 +143,7 @@ impl Stop {
             Stop::Met | Stop::Outside | Stop::Rounding | Stop::Flat => Outcome::Precision,
             Stop::Capacity => Outcome::Capacity,
             Stop::Iterations => Outcome::Iterations,
+            Stop::Interrupted => Outcome::Interrupted,
         }
     }
 }

@@ -78,6 +78,18 @@ impl<T: Real> Tolerance<T> {
     }
 }
 
+impl<T: Real> Tolerance<T> {
+    /// What is not told from a value: up to so much above it.
+    pub(crate) fn above(&self, value: T) -> T {
+        value + self.absolute.at_least(self.relative * value.abs())
+    }
+
+    /// The lowest lower end that meets the tolerance with this upper end > 0.
+    pub(crate) fn below(&self, upper: T) -> T {
+        (upper - self.absolute).at_most(upper / (T::one() + self.relative))
+    }
+}
+
 /// Turns lengths measured on the core of A into bounds on d_Q(A).
 #[derive(Clone, Copy)]
 pub struct Bounds<T> {

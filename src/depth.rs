@@ -319,7 +319,7 @@ impl<T: Real> Solver<'_, T, 3> {
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let answer = self.solve(&pair, &ball, &options);
+        let answer = self.expand_only(Query::new(&pair, &ball, pair.radius(), options));
         Depth::new(&answer, &pair)
     }
 }

@@ -95,6 +95,7 @@ mod meridian;
 #[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
 #[path = "capi/panic.rs"]
 mod panic;
+mod plan;
 mod polytope;
 pub mod prepare;
 pub mod qset;
@@ -106,7 +107,7 @@ mod start;
 pub mod support;
 pub mod workspace;
 
-pub use answer::{Answer, Outcome};
+pub use answer::{Answer, Outcome, Plan};
 pub use depth::{Body, BodyError, Depth};
 pub use query::Options;
 pub use scalar::{Real, Vector};

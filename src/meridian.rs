@@ -12,7 +12,7 @@
 //! vertices, ordered by direction, are a chain from the lowest support point to the highest; the edge that bounds d is pushed
 //! out as in Algorithm 1.
 
-use crate::answer::{Answer, Stop};
+use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
 use crate::query::Query;
 use crate::scalar::{Real, Vector, norm};
@@ -40,7 +40,8 @@ impl<T: Real> Solver<'_, T, 3> {
         let mut witness = Simplex::new(*vertices.get(edge.position)?);
         witness.push(*vertices.get(edge.position + 1)?);
         witness.minimize(self.polytope.resolution());
-        Some(query.answer(stop, lower, witness, &self.polytope))
+        query.plan = Plan::Meridian;
+        Some(self.report(query, stop, lower, witness))
     }
 
     /// Grows the chain until its bracket ends the query.
@@ -64,15 +65,15 @@ impl<T: Real> Solver<'_, T, 3> {
         loop {
             let Some(edge) = self.lowest_edge(axis, outward) else { return Ok(None) };
             let inradius = edge.offset.at_most(ends);
-            let Some(lower) = query.lower_from_offset(inradius) else { return Ok(None) };
+            let Some(lower) = query.lower_from_offset(inradius, query.margin()) else { return Ok(None) };
             let verdict = |query: &Query<'_, T, 3>| query.verdict(&Bracket { lower, upper: query.upper() });
             if let Some(stop) = verdict(query)
                 && query.verify()?
             {
                 return Ok(Some((stop, edge, lower)));
             }
-            if query.exhausted() {
-                return Ok(Some((Stop::Iterations, edge, lower)));
+            if let Some(stop) = query.exhausted() {
+                return Ok(Some((stop, edge, lower)));
             }
             let (vertex, reached) = query.support(&edge.normal)?;
             if let Some(stop) = verdict(query)

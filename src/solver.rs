@@ -1,14 +1,15 @@
-//! The d_Q loop: Algorithm 1 of Zheng & Yamane.
+//! The solver: which plan a query takes, and how what the plan shows becomes the answer.
 
-use crate::answer::{Answer, Stop};
+use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
 use crate::distance::{Cloud, Inflated, Nearest, nearest};
-use crate::polytope::{Facet, Index, Insertion, Polytope};
+use crate::plan::expansion::Expanded;
+use crate::plan::rays::solve_rays;
+use crate::polytope::Polytope;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
-use crate::start::Start;
 use crate::support::{Failure, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or
@@ -19,207 +20,134 @@ pub struct Solver<'w, T, const N: usize> {
     pub(crate) polytope: Polytope<'w, T, N>,
 }
 
-/// Insertions per dimension that [`Solver::widen`] may spend.
-const WIDENINGS: usize = 8;
-
-/// What the expansion ended with: the lowest key, and its facet if it is known.
-struct Expanded<T> {
-    stop: Stop,
-    key: T,
-    facet: Option<Index>,
+/// What is known before the plan that needs memory has had its say.
+enum Opening<T, const N: usize> {
+    Decided(Answer<T, N>),
+    /// The expansion's end, and the point of A that was nearest to the origin before it, if that is outside of the core.
+    Expanded(Expanded<T>, Option<Nearest<T, N>>),
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The generalized penetration distance d_Q(A) = max { λ : λQ ⊂ A } of the origin in A.
     ///
-    /// Best-first polytope expansion (Algorithm 1): the facet that bounds λQ now is pushed out to the boundary of A
-    /// until inner polytope and outer half-space agree. With a Euclidean Q, A's ball term is taken out exactly, and a
-    /// negative answer is minus the distance.
+    /// The plan is chosen by what the query is, and told in [`Answer::plan`]:
+    /// * a polytopal Q takes one ray per vertex of Q, and no memory of the workspace;
+    /// * otherwise a polytope is expanded, best first (Algorithm 1);
+    /// * when it outgrows the memory, d is searched cone by cone in the same memory. That converges with any capacity of at
+    ///   least 4 N facets and 3 N vertices, the sooner the more there is.
     ///
-    /// Cost: one support call and, for N = 3, about five facets an iteration; 10 to 40 iterations for a relative 1e-6. The work is
-    /// bounded by the capacity.
+    /// With a Euclidean Q, A's ball term is taken out exactly, and a negative answer is minus the distance.
+    ///
+    /// Cost: one support call an iteration, and with N = 3 about five facets, with N = 6 about fifty. 10 to 40 iterations in space for
+    /// a relative 1e-6; some thousand for a smooth A in six dimensions and a relative 1e-3. The work is bounded by `options.max_iterations` only.
     ///
     /// Never fails: bad input to the support function or the gauge ends with `SupportFailed` and a bracket that is
     /// true for the values that were returned.
     pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, options: &Options<T, N>) -> Answer<T, N> {
-        self.polytope.reset();
-        let radius = a.radius();
-        if q.ball_radius().is_none() && radius > T::zero() {
-            let inflated = Inflated(a);
-            return self.run(Query::new(&inflated, q, T::zero(), *options));
-        }
-        self.run(Query::new(a, q, radius, *options))
+        self.solve_until(a, q, options, None)
     }
 
-    fn run(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
+    /// The same with a deadline: `interrupt` is asked before every iteration, and ends the query by `true` with outcome
+    /// [`Interrupted`](crate::Outcome::Interrupted) and the best bracket so far.
+    pub fn solve_until(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Answer<T, N> {
+        self.polytope.reset();
+        let inflated = Inflated(a);
+        let (mut query, checked) = if q.ball_radius().is_none() && a.radius() > T::zero() {
+            Query::new(&inflated, q, T::zero(), *options)
+        } else {
+            Query::new(a, q, a.radius(), *options)
+        };
+        query.interrupt = interrupt;
         if let Err(failure) = checked.and_then(|()| query.normalize()) {
             return self.give_up(&mut query, failure);
         }
-        let first = query.first_direction();
-        // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
-        let mut floor = None;
-        if query.bounds.radius > T::zero() {
-            match self.approach(&mut query, &first) {
-                Ok((stop, near)) => {
-                    let bracket = Bracket { lower: query.lower_from_distance(near.distance), upper: query.upper() };
-                    if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
-                        return query.answer(stop, bracket.lower, near.simplex, &self.polytope);
-                    }
-                    floor = Some(near);
-                }
-                Err(failure) => return self.give_up(&mut query, failure),
+        match solve_rays(&mut query) {
+            Ok(Some(rays)) => {
+                query.plan = Plan::Rays;
+                return query.answer(rays.stop, rays.lower, rays.witness);
             }
+            Ok(None) => {}
+            Err(failure) => return self.give_up(&mut query, failure),
         }
-        let expanded = match self.start(&mut query, &first) {
-            Ok(None) => self.expand(&mut query),
-            Ok(Some(stop)) => Ok(Expanded { stop, key: -T::HUGE, facet: None }),
-            Err(failure) => Err(failure),
-        };
-        match expanded {
-            Ok(expanded) => self.conclude(&mut query, expanded, floor),
+        match self.open(&mut query) {
+            Ok(Opening::Decided(answer)) => answer,
+            Ok(Opening::Expanded(expanded, floor)) if expanded.stop == Stop::Capacity => {
+                self.solve_cones(&mut query, expanded, floor)
+            }
+            Ok(Opening::Expanded(expanded, floor)) => self.conclude(&mut query, expanded, floor),
             Err(failure) => self.give_up(&mut query, failure),
         }
     }
 
-    /// Lines 5 to 9 of Algorithm 1.
-    fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
-        loop {
-            let Some((key, index)) = self.polytope.pop_lowest() else {
-                // No facet below the best upper bound is left.
-                if !self.confirm(query)? {
-                    continue;
-                }
-                let key = query.skipped().at_most(query.ratio());
-                return Ok(Expanded { stop: Stop::Rounding, key, facet: None });
-            };
-            let key = key.at_most(query.skipped());
-            let end = |stop| Ok(Expanded { stop, key, facet: Some(index) });
-            let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { return end(Stop::Rounding) };
-            if let Some(stop) = self.verdict(query, key) {
-                if !self.confirm(query)? {
-                    continue;
-                }
-                return end(stop);
-            }
-            if query.exhausted() {
-                return end(Stop::Iterations);
-            }
-            let (vertex, height) = query.support(&normal)?;
-            if query.is_outside(height) {
-                if !self.confirm(query)? {
-                    continue;
-                }
-                return end(Stop::Outside);
-            }
-            let tolerance = self.polytope.resolution();
-            // On the boundary of A, as far as arithmetic can tell?
-            let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
-            if let Some(stop) = self.verdict(query, key).or(final_facet) {
-                if !self.confirm(query)? {
-                    continue;
-                }
-                return end(stop);
-            }
-            match self.polytope.insert(index, vertex, tolerance) {
-                Some(Insertion::Done) => self.rate_fresh(query)?,
-                Some(Insertion::Full) => return end(Stop::Capacity),
-                Some(Insertion::Rejected) | None => return end(Stop::Rounding),
-            }
+    /// The same by expansion alone, for a query whose sets are fit for it: the work is bounded by the capacity.
+    pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
+        self.polytope.reset();
+        match checked.and_then(|()| query.normalize()).and_then(|()| self.open(&mut query)) {
+            Ok(Opening::Decided(answer)) => answer,
+            Ok(Opening::Expanded(expanded, floor)) => self.conclude(&mut query, expanded, floor),
+            Err(failure) => self.give_up(&mut query, failure),
         }
     }
 
-    /// Checks the best upper bound without A's shortcuts. When it rises, facets that were above it before matter
-    /// again, and the search goes on; that happens once at most.
-    fn confirm(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
-        if query.verify()? {
-            return Ok(true);
-        }
-        query.forget_skipped();
-        if let Some(lowest) = self.polytope.requeue(query.ratio()) {
-            query.skip(lowest);
-        }
-        Ok(false)
-    }
-
-    /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a
-    /// pass over the facets.
-    fn verdict(&self, query: &Query<'_, T, N>, key: T) -> Option<Stop> {
-        if query.is_open(key) {
-            return None;
-        }
-        let upper = query.upper();
-        let stop = query.verdict(&Bracket { lower: key, upper })?;
-        if stop == Stop::Below {
-            return Some(stop);
-        }
-        query.verdict(&Bracket { lower: self.lower(query, key)?, upper })
-    }
-
-    /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
-    /// inside.
-    fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
-        if !self.polytope.is_sound() {
-            return None;
-        }
-        match query.ball {
-            Some(radius) => {
-                // Back from the key to the offset, rounded down: four roundings there and back.
-                let whole = key * radius;
-                query.lower_from_offset(whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF))
+    /// Distance where that decides, else expansion.
+    fn open(&mut self, query: &mut Query<'_, T, N>) -> Result<Opening<T, N>, Failure> {
+        let first = query.first_direction();
+        // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
+        let mut floor = None;
+        if query.bounds.radius > T::zero() {
+            let (stop, near) = self.approach(query, &first)?;
+            let bracket = Bracket { lower: query.lower_from_distance(near.distance), upper: query.upper() };
+            if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
+                query.plan = Plan::Distance;
+                return Ok(Opening::Decided(self.report(query, stop, bracket.lower, near.simplex)));
             }
-            None => query.lower_from_facets(self.polytope.facets().map(|f| (f.offset, f.key))),
+            floor = Some(near);
         }
+        let expanded = match self.start(query, &first)? {
+            None => self.expand(query)?,
+            Some(stop) => Expanded { stop, key: -T::HUGE, facet: None },
+        };
+        Ok(Opening::Expanded(expanded, floor))
     }
 
-    /// Line 7: keys of the new facets. One above the best upper bound will never be the lowest that matters.
-    fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
-        while let Some(index) = self.polytope.next_fresh() {
-            let Some(facet) = self.polytope.facet(index) else { break };
-            let key = query.key(&facet.normal, facet.offset)?;
-            if !self.polytope.set_key(index, key, key < query.ratio()) {
-                query.skip(key);
-            }
-        }
-        Ok(())
-    }
-
-    /// Lines 1 to 3: the first simplex. A stop instead when A is flat, or when it certainly does not contain the
-    /// origin.
-    fn start(&mut self, query: &mut Query<'_, T, N>, first: &Vector<T, N>) -> Result<Option<Stop>, Failure> {
-        let mut start = Start::new(*first);
-        while start.missing() > 0 {
-            let direction = start.direction();
-            let (mut vertex, height) = query.support(&direction)?;
-            if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
-                return Ok(Some(Stop::Outside));
-            }
-            if start.progress(&direction, &vertex.point) < query.reach() * T::of(0.01) {
-                let (other, height) = query.support(&-direction)?;
-                if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
-                    return Ok(Some(Stop::Outside));
+    /// Cone by cone, after the polytope has outgrown the memory.
+    fn solve_cones(
+        &mut self,
+        query: &mut Query<'_, T, N>,
+        expanded: Expanded<T>,
+        floor: Option<Nearest<T, N>>,
+    ) -> Answer<T, N> {
+        let Some(cones) = self.conewise(query, &expanded) else { return self.conclude(query, expanded, floor) };
+        match cones {
+            Ok(found) => {
+                query.plan = Plan::Cones;
+                if found.stop == Stop::Outside || found.lower <= -T::HUGE {
+                    let expanded = Expanded { stop: found.stop, key: -T::HUGE, facet: None };
+                    return self.conclude(query, expanded, floor);
                 }
-                if start.progress(&direction, &other.point) > start.progress(&direction, &vertex.point) {
-                    vertex = other;
-                }
+                let answer = self.report(query, found.stop, found.lower, found.witness);
+                Answer { cones: found.cones, splits: found.splits, ..answer }
             }
-            let thin = (self.polytope.resolution() + query.margin()) * T::count(4);
-            if start.accept(&vertex.point, thin) {
-                if self.polytope.add_vertex(vertex).is_none() {
-                    return Ok(Some(Stop::Capacity));
-                }
-            } else {
-                start.flat(&direction);
-            }
+            Err(failure) => self.give_up(query, failure),
         }
-        query.dimension = start.dimension();
-        if start.dimension() < N {
-            return Ok(Some(Stop::Flat));
-        }
-        if self.polytope.make_simplex(&start.normals()).is_none() {
-            return Ok(Some(Stop::Capacity));
-        }
-        self.rate_fresh(query)?;
-        Ok(None)
+    }
+
+    /// The answer, with what was used of the memory.
+    pub(crate) fn report(
+        &self,
+        query: &mut Query<'_, T, N>,
+        stop: Stop,
+        lower: T,
+        witness: Simplex<T, N>,
+    ) -> Answer<T, N> {
+        let answer = query.answer(stop, lower, witness);
+        Answer { vertices: self.polytope.peak_vertices(), facets: self.polytope.peak_facets(), ..answer }
     }
 
     /// The distance iteration on the core of A, watched by the bracket.
@@ -237,7 +165,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
                 let bracket = Bracket { lower: query.lower_from_distance(distance), upper: query.upper() };
                 let verdict = query.verdict(&bracket);
-                let end = verdict.or_else(|| query.exhausted().then_some(Stop::Iterations));
+                let end = verdict.or_else(|| query.exhausted());
                 stop = end.unwrap_or(stop);
                 end.is_some()
             },
@@ -261,82 +189,26 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             if let Some(lower) = self.lower(query, key) {
                 let facet = facet.filter(|_| query.ball.is_some());
                 let witness = self.touching_simplex(query, facet);
-                return query.answer(stop, lower, witness, &self.polytope);
+                return self.report(query, stop, lower, witness);
             }
         }
         // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end.
-        if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations) {
+        if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted) {
             let first = if apart { query.direction } else { query.first_direction() };
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
-                Ok((Stop::Iterations, near)) => return self.lower_by_vertices(query, Stop::Iterations, Some(near)),
+                Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {
+                    return self.lower_by_vertices(query, stop, Some(near));
+                }
                 Ok((end, near)) => {
                     let stop = if stop == Stop::Flat && near.inside { stop } else { end };
                     let lower = query.lower_from_distance(near.distance);
-                    return query.answer(stop, lower, near.simplex, &self.polytope);
+                    return self.report(query, stop, lower, near.simplex);
                 }
                 Err(failure) => return self.give_up(query, failure),
             }
         }
         self.lower_by_vertices(query, stop, floor)
-    }
-
-    /// For a Q that is not a ball, expansion towards a few directions of Q can leave facets so near to the origin that
-    /// the margin swallows them, and the bracket open. Then the nearest facets are pushed out too.
-    fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<(), Failure> {
-        if query.ball.is_some() || stop != Stop::Rounding {
-            return Ok(());
-        }
-        let bracket = |solver: &Self, query: &Query<'_, T, N>| {
-            solver.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
-        };
-        for _ in 0..WIDENINGS * N {
-            if bracket(self, query).is_some_and(|b| query.is_met(&b)) {
-                return Ok(());
-            }
-            let Some((index, normal, offset)) = self.polytope.nearest_facet() else { return Ok(()) };
-            let (vertex, height) = query.support(&normal)?;
-            let tolerance = self.polytope.resolution();
-            if height - offset <= tolerance + tolerance {
-                return Ok(());
-            }
-            match self.polytope.insert(index, vertex, tolerance) {
-                Some(Insertion::Done) => self.rate_fresh(query)?,
-                _ => return Ok(()),
-            }
-        }
-        Ok(())
-    }
-
-    /// The simplex of the surface that touches the largest d Q. For a ball, the one around the foot of the perpendicular on
-    /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
-    /// the plane, or belong to another of several minima.
-    fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
-        let lowest = match facet {
-            Some(index) => self.polytope.facet(index),
-            None => self.polytope.lowest(),
-        };
-        let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
-        let mut simplex = self.polytope.corners(facet);
-        if query.ball.is_none() {
-            return simplex;
-        }
-        let foot = query.foot();
-        let resolution = self.polytope.resolution();
-        simplex.translate(&-foot);
-        simplex.minimize(resolution);
-        let miss = simplex.point();
-        let near = resolution * T::count(64) + query.options.relative.at_least(T::zero()).root() * norm(&foot);
-        if miss.dot(&miss) > near * near {
-            let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
-            if let Some(found) = cloud.nearest(&facet.normal)
-                && found.distance * found.distance < miss.dot(&miss)
-            {
-                simplex = found.simplex;
-            }
-        }
-        simplex.translate(&foot);
-        simplex
     }
 
     /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
@@ -347,9 +219,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         match stored.into_iter().chain(floor).reduce(|a, b| if b.distance < a.distance { b } else { a }) {
             Some(near) => {
                 let lower = query.lower_from_distance(near.distance);
-                query.answer(stop, lower, near.simplex, &self.polytope)
+                self.report(query, stop, lower, near.simplex)
             }
-            None => query.answer(stop, -T::HUGE, Simplex::new(Vertex::empty()), &self.polytope),
+            None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),
         }
     }
 

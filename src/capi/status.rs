@@ -67,6 +67,8 @@ pub const QDIST_ITERATIONS: qdist_outcome = 7;
 pub const QDIST_DEGENERATE: qdist_outcome = 8;
 /// A callback failed; the status is QDIST_ERROR_CALLBACK.
 pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
+/// The caller's deadline has passed.
+pub const QDIST_INTERRUPTED: qdist_outcome = 10;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
 /// number. Callbacks must not return it, nor INT32_MIN + 1.
@@ -111,6 +113,7 @@ pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char 
         QDIST_ITERATIONS => c"iterations",
         QDIST_DEGENERATE => c"degenerate",
         QDIST_SUPPORT_FAILED => c"support failed",
+        QDIST_INTERRUPTED => c"interrupted",
         _ => c"unknown outcome",
     }
     .as_ptr()
@@ -136,6 +139,7 @@ pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
         Outcome::Iterations => QDIST_ITERATIONS,
         Outcome::Degenerate => QDIST_DEGENERATE,
         Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
+        Outcome::Interrupted => QDIST_INTERRUPTED,
     }
 }
 

@@ -110,7 +110,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 }
                 let below = (outside.normal.dot(&point) - outside.offset).at_most(T::zero());
                 let normal = Self::join(above, below, &eliminated.normal, &outside.normal);
-                let back = Self::slot_across(outside, &eliminated, i)?;
+                let back = outside.slot_towards(at)?;
 
                 let mut vertices = eliminated.vertices;
                 vertices[i] = apex;
@@ -134,9 +134,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     fn link_cone(&mut self, head: Index, visible: usize) -> Option<()> {
         let mut at = head;
         while at != NONE {
-            let eliminated = *self.facet(at)?;
+            let Facet { neighbors: around, vertices: corners, link, .. } = *self.facet(at)?;
             for i in 0..N {
-                let made = eliminated.neighbors[i];
+                let made = around[i];
                 if self.facet(made)?.state != State::Fresh {
                     continue;
                 }
@@ -144,44 +144,33 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                     if j == i || *self.facet(made)?.neighbors.get(j)? != NONE {
                         continue;
                     }
-                    let (other, slot) = self.turn(at, &eliminated, i, j, visible)?;
+                    let (other, slot) = self.turn(at, around[j], corners[i], visible)?;
                     *self.facet_mut(made)?.neighbors.get_mut(j)? = other;
                     *self.facet_mut(other)?.neighbors.get_mut(slot)? = made;
                 }
             }
-            at = eliminated.link;
+            at = link;
         }
         Some(())
     }
 
-    /// Turns around the sub-ridge of `start` without its vertices i and j, away from i's ridge, until a new facet is
-    /// met; returns it and its slot opposite the sub-ridge. At most one step per visible facet.
-    fn turn(&self, start: Index, first: &Facet<T, N>, i: usize, j: usize, visible: usize) -> Option<(Index, usize)> {
-        let mut facet = *first;
-        let mut at = start;
-        let mut kept = *facet.vertices.get(i)?; // the vertex that the next facet shares besides S
-        let mut cross = j; // the slot whose ridge is crossed
+    /// Turns around a sub-ridge through the visible patch, from facet `at` across the ridge to `next`, until a new facet is met; returns
+    /// it and its slot opposite the sub-ridge. `kept` is the vertex of `at` on that ridge which is not on the sub-ridge. At
+    /// most one step per visible facet.
+    fn turn(&self, mut at: Index, mut next: Index, mut kept: Index, visible: usize) -> Option<(Index, usize)> {
         for _ in 0..=visible {
-            let next = *facet.neighbors.get(cross)?;
             let neighbor = self.facet(next)?;
+            let across = neighbor.slot(kept)?;
             if neighbor.state == State::Fresh {
-                return Some((next, neighbor.slot(kept)?));
+                return Some((next, across));
             }
             debug_assert!(next != at);
-            let entered = Self::slot_across(neighbor, &facet, cross)?;
-            cross = neighbor.slot(kept)?;
+            let entered = neighbor.slot_towards(at)?;
             kept = *neighbor.vertices.get(entered)?;
-            facet = *neighbor;
             at = next;
+            next = *neighbor.neighbors.get(across)?;
         }
         None
-    }
-
-    /// The slot of `facet` opposite the ridge that it shares with `other` across `other`'s slot `across`: that of the one
-    /// vertex which is not on the ridge.
-    fn slot_across(facet: &Facet<T, N>, other: &Facet<T, N>, across: usize) -> Option<usize> {
-        let off = |v: Index| other.vertices.iter().enumerate().all(|(i, &w)| i == across || w != v);
-        facet.vertices.iter().position(|&v| off(v))
     }
 
     /// Puts the visible facets on the free list and the fresh ones into service.

@@ -20,6 +20,7 @@ use crate::simplex::{Simplex, Vertex};
 
 mod heap;
 mod insert;
+mod orthant;
 mod plane;
 
 pub use heap::{Entry, Heap};
@@ -64,10 +65,26 @@ impl<T: Real, const N: usize> Facet<T, N> {
         self.state == State::Live
     }
 
+    /// The slot of a neighbour. There is one: two facets never have all vertices in common, since a new facet contains the new
+    /// point and one ridge of the old surface.
+    fn slot_towards(&self, neighbor: Index) -> Option<usize> {
+        place(&self.neighbors, neighbor)
+    }
+
     /// The slot of a vertex.
     fn slot(&self, vertex: Index) -> Option<usize> {
-        self.vertices.iter().position(|&v| v == vertex)
+        place(&self.vertices, vertex)
     }
+}
+
+/// Where an index stands in a list that holds it at most once. Without branches: which slot it is cannot be predicted.
+#[inline(always)]
+fn place<const N: usize>(list: &[Index; N], index: Index) -> Option<usize> {
+    let mut slot = N;
+    for i in 0..N {
+        slot = if list[i] == index { i } else { slot };
+    }
+    (slot < N).then_some(slot)
 }
 
 /// A convex polytope in borrowed memory.
@@ -76,11 +93,15 @@ pub struct Polytope<'a, T, const N: usize> {
     facets: &'a mut [Facet<T, N>],
     heap: Heap<'a, T>,
     vertex_count: usize,
+    /// The first so many vertices are points at infinity (module `orthant`): 0 or N.
+    rays: usize,
     /// Facets at this position and above were never used since the last reset.
     facet_top: usize,
     free: Index,
     live: usize,
     peak: usize,
+    /// The most vertices stored at one time, before the last start.
+    peak_vertices: usize,
     /// Head of the list of facets that the last insertion made.
     fresh: Index,
     /// The centroid of the first simplex.
@@ -100,10 +121,12 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             facets,
             heap: Heap::new(heap),
             vertex_count: 0,
+            rays: 0,
             facet_top: 0,
             free: NONE,
             live: 0,
             peak: 0,
+            peak_vertices: 0,
             fresh: NONE,
             center: Vector::zeros(),
             sound: true,
@@ -116,10 +139,12 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     pub fn reset(&mut self) {
         self.heap.clear();
         self.vertex_count = 0;
+        self.rays = 0;
         self.facet_top = 0;
         self.free = NONE;
         self.live = 0;
         self.peak = 0;
+        self.peak_vertices = 0;
         self.fresh = NONE;
         self.sound = true;
         self.reach_squared = T::zero();
@@ -127,12 +152,22 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     }
 
     pub fn vertices(&self) -> &[Vertex<T, N>] {
-        self.vertices.get(..self.vertex_count).unwrap_or(&[])
+        self.vertices.get(self.rays..self.vertex_count).unwrap_or(&[])
     }
 
     /// The most facets alive at one time since the last reset.
     pub fn peak_facets(&self) -> usize {
         self.peak
+    }
+
+    /// The most vertices stored at one time since the last reset.
+    pub fn peak_vertices(&self) -> usize {
+        self.peak_vertices.max(self.vertex_count)
+    }
+
+    /// Do the capacities allow a search by cones to make progress with every cone?
+    pub fn holds_cones(&self) -> bool {
+        self.facets.len() >= 4 * N && self.vertices.len() >= 3 * N
     }
 
     /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
@@ -201,7 +236,8 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
 
     /// The vertices of a facet.
     pub fn corners(&self, facet: &Facet<T, N>) -> Simplex<T, N> {
-        let mut vertices = facet.vertices.iter().filter_map(|&v| self.vertices.get(usize::from(v)));
+        let finite = facet.vertices.iter().filter(|&&v| usize::from(v) >= self.rays);
+        let mut vertices = finite.filter_map(|&v| self.vertices.get(usize::from(v)));
         let mut simplex = Simplex::new(vertices.next().copied().unwrap_or(Vertex::empty()));
         for vertex in vertices {
             simplex.push(*vertex);

@@ -17,6 +17,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// n.v over the facet's vertices above the resolution; then the normal is projected once more onto the orthogonal
     /// complement of the facet's edges.
     pub(super) fn plane(&mut self, vertices: &[Index; N], normal: Vector<T, N>) -> Option<(Vector<T, N>, T)> {
+        if self.rays > 0 {
+            return self.plane_in_orthant(vertices, &normal);
+        }
         let normal = unit(&normal);
         let (lowest, highest) = self.heights(vertices, &normal)?;
         let (normal, offset) = if highest - lowest <= self.resolution() {

@@ -30,6 +30,33 @@ pub trait Gauge<T: Real, const N: usize> {
         None
     }
 
+    /// s_Q(u): a point of Q that attains `value`. Used to look for small upper bounds; `None`: not known.
+    fn mapping(&self, _u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        None
+    }
+
+    /// For the hull of the origin and finitely many points: how many. 0: Q is not given that way.
+    ///
+    /// d_Q is then the smallest of as many ray crossings, each a convex problem.
+    fn vertex_count(&self) -> usize {
+        0
+    }
+
+    /// Point number `index` of [`vertex_count`](Gauge::vertex_count).
+    fn vertex(&self, _index: usize) -> Vector<T, N> {
+        Vector::zeros()
+    }
+
+    /// Radius of a ball around the origin that Q certainly contains; 0: none that is known.
+    fn inner_radius(&self) -> T {
+        self.ball_radius().unwrap_or(T::zero())
+    }
+
+    /// Does Q not change when the coordinates named by the bits of `signs` change sign? `true` is a proof, `false` says nothing.
+    fn mirrored(&self, _signs: u8) -> bool {
+        self.ball_radius().is_some()
+    }
+
     /// An upper bound e of the rounding error of [`value`](Gauge::value) for unit u, as a length. Typically a few units
     /// of roundoff times the largest |q| in Q.
     fn error(&self) -> T;

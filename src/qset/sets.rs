@@ -29,6 +29,21 @@ impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
     fn ball_radius(&self) -> Option<T> {
         (**self).ball_radius()
     }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        (**self).mapping(u)
+    }
+    fn vertex_count(&self) -> usize {
+        (**self).vertex_count()
+    }
+    fn vertex(&self, index: usize) -> Vector<T, N> {
+        (**self).vertex(index)
+    }
+    fn inner_radius(&self) -> T {
+        (**self).inner_radius()
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        (**self).mirrored(signs)
+    }
     fn error(&self) -> T {
         (**self).error()
     }
@@ -73,6 +88,9 @@ impl<T: Real, const N: usize> Gauge<T, N> for Ball<T> {
     #[inline]
     fn ball_radius(&self) -> Option<T> {
         Some(self.radius)
+    }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        Some(u * (self.radius / norm(u)))
     }
     fn error(&self) -> T {
         roundings(N + 4, self.radius)
@@ -134,6 +152,19 @@ impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
         }
         Ok(self.size * squares.root())
     }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        let inner = self.columns.tr_mul(u);
+        let length = norm(&inner);
+        (length > T::zero()).then(|| self.columns * (inner * (self.size / length)))
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        // Each axis must stay on its line.
+        (0..N).all(|j| {
+            let column = &self.columns.data.0[j];
+            let flips = |flipped: bool| (0..N).any(|i| column[i] != T::zero() && (signs >> i & 1 == 1) == flipped);
+            !(flips(true) && flips(false))
+        })
+    }
     fn error(&self) -> T {
         self.error
     }
@@ -169,6 +200,30 @@ impl<T: Real, const N: usize> Gauge<T, N> for BoxGauge<T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(self.shape.support(u)?.dot(u))
+    }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        self.shape.support(u).ok()
+    }
+    fn vertex_count(&self) -> usize {
+        1 << self.shape.half().iter().filter(|&&h| h > T::zero()).count()
+    }
+    fn vertex(&self, index: usize) -> Vector<T, N> {
+        // Gray code: one coordinate changes at a time.
+        let mut code = index ^ (index >> 1);
+        let half = *self.shape.half();
+        half.map(|h| {
+            let negative = h > T::zero() && code & 1 == 1;
+            if h > T::zero() {
+                code >>= 1;
+            }
+            if negative { -h } else { h }
+        })
+    }
+    fn inner_radius(&self) -> T {
+        self.shape.half().iter().fold(T::HUGE, |least, &h| least.at_most(h))
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         roundings(N + 1, self.shape.extent())
@@ -206,6 +261,40 @@ impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         let farther = |m: T, (&s, &x): (&T, &T)| m.at_least(s * x).at_least(-s * x);
         Ok(self.semi.iter().zip(u.iter()).fold(T::zero(), farther))
+    }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        let (mut best, mut point) = (T::zero(), Vector::zeros());
+        for i in 0..N {
+            let reach = (self.semi[i] * u[i]).abs();
+            if reach > best {
+                best = reach;
+                point = Vector::zeros();
+                point[i] = if u[i] < T::zero() { -self.semi[i] } else { self.semi[i] };
+            }
+        }
+        Some(point)
+    }
+    fn vertex_count(&self) -> usize {
+        2 * self.semi.iter().filter(|&&s| s > T::zero()).count()
+    }
+    fn vertex(&self, index: usize) -> Vector<T, N> {
+        let mut point = Vector::<T, N>::zeros();
+        let mut axes = self.semi.iter().enumerate().filter(|&(_, &s)| s > T::zero());
+        if let Some((i, &s)) = axes.nth(index / 2)
+            && let Some(x) = point.get_mut(i)
+        {
+            *x = if index % 2 == 1 { -s } else { s };
+        }
+        point
+    }
+    fn inner_radius(&self) -> T {
+        // The ball touches the facet with the normal 1 / semi.
+        let least = self.semi.iter().fold(T::HUGE, |least, &s| least.at_most(s));
+        let sum = self.semi.iter().fold(T::zero(), |sum, &s| sum + (least / s) * (least / s));
+        if least > T::zero() { least / sum.root() * (T::one() - T::count(4 * N) * T::ROUNDOFF) } else { T::zero() }
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         roundings(2, self.size)
@@ -245,6 +334,15 @@ impl<T: Real, const N: usize> Gauge<T, N> for Segment<T, N> {
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(T::zero().at_least(self.end.dot(u)))
     }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        (self.end.dot(u) > T::zero()).then_some(self.end)
+    }
+    fn vertex_count(&self) -> usize {
+        1
+    }
+    fn vertex(&self, _index: usize) -> Vector<T, N> {
+        self.end
+    }
     fn error(&self) -> T {
         roundings(N + 1, self.length)
     }
@@ -282,6 +380,15 @@ impl<T: Real, const N: usize> Gauge<T, N> for Vertices<'_, T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(T::zero().at_least(self.points.support(u)?.dot(u)))
+    }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        self.points.support(u).ok()
+    }
+    fn vertex_count(&self) -> usize {
+        self.points.points().len()
+    }
+    fn vertex(&self, index: usize) -> Vector<T, N> {
+        self.points.points().get(index).map_or(Vector::zeros(), |&p| Vector::from(p))
     }
     fn error(&self) -> T {
         self.points.error() + roundings(N + 2, self.points.extent())

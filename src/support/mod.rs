@@ -117,6 +117,12 @@ pub trait Support<T: Real, const N: usize> {
         Symmetry::None
     }
 
+    /// Does the core not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? `true` is a proof,
+    /// `false` says nothing. A search by cones then leaves out cones that are images of others.
+    fn mirrored(&self, _signs: u8) -> bool {
+        false
+    }
+
     /// The rounding error e of the promise above, as a length. The default, `16 N u extent`, covers a
     /// support mapping that does a few operations on coordinates of size `extent` (u: unit roundoff).
     fn error(&self) -> T {

@@ -268,6 +268,11 @@ impl<T: Real, const N: usize> BoxShape<T, N> {
     pub(crate) fn trusted(half: Vector<T, N>) -> Self {
         Self { half }
     }
+
+    /// The half extents.
+    pub(crate) fn half(&self) -> &Vector<T, N> {
+        &self.half
+    }
 }
 
 impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {

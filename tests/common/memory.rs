@@ -108,6 +108,7 @@ pub fn broken_promise<T: Real, const N: usize>(
                 claim(options.threshold.is_some_and(|t| s.upper < t.to_f64()), "Below, but upper >= threshold")
             }
             Outcome::Iterations => claim(limit != 0, "Iterations without a limit"),
+            Outcome::Interrupted => None,
             Outcome::Touching => claim(s.lower <= 0.0 && s.upper >= 0.0, "Touching, but the bracket misses 0"),
             Outcome::Precision | Outcome::Capacity => claim(s.upper >= 0.0, "apart, but not Separated"),
             Outcome::Degenerate => claim(s.lower <= 0.0, "Degenerate, but lower > 0"),

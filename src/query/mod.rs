@@ -1,13 +1,15 @@
 //! The state of one query: what has been asked of A and Q, the best upper bound so far, and how all of it becomes an
 //! [`Answer`].
 
-use crate::answer::{Answer, Stop};
-use crate::bounds::{Bounds, Bracket, Tolerance};
-use crate::polytope::Polytope;
+use crate::answer::{Plan, Stop};
+use crate::bounds::Bounds;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, finite};
-use crate::simplex::{Simplex, Vertex};
+use crate::simplex::Vertex;
 use crate::support::{Failure, Support};
+
+mod bracket;
+mod end;
 
 /// How a query ends, and where it looks first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +20,8 @@ pub struct Options<T, const N: usize> {
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most points to add; 0: until the workspace is full. Default 0.
+    /// Most points to add; 0: no limit. Default 100,000: a second or so in six dimensions. What a query needs grows with a power of
+    /// 1 / tolerance, (dimension - 1) / 2 for a smooth A.
     pub max_iterations: u32,
     /// The direction to look in first (any length, not zero): where the answer was last time.
     pub guess: Option<Vector<T, N>>,
@@ -30,16 +33,16 @@ impl<T: Real, const N: usize> Default for Options<T, N> {
             absolute: T::zero(),
             relative: T::RELATIVE_TOLERANCE,
             threshold: None,
-            max_iterations: 0,
+            max_iterations: 100_000,
             guess: None,
         }
     }
 }
 
-/// A bracket of width ε pins the direction of a smooth minimum to about sqrt(ε) only. Running to a quarter of the tolerance
-/// halves that error and costs an iteration at most.
-const SHARPEN: f64 = 0.25;
+/// Directions farther apart than this cosine (8 degrees) are not two guesses at the same minimiser.
+const RIVAL_COSINE: f64 = 0.99;
 
+/// One query: A and Q, what they have been asked, and the best upper bound.
 pub(crate) struct Query<'q, T, const N: usize> {
     a: &'q dyn Support<T, N>,
     q: &'q dyn Gauge<T, N>,
@@ -63,6 +66,12 @@ pub(crate) struct Query<'q, T, const N: usize> {
     height: T,
     gauge: T,
     ratio: T,
+    /// The support point of the core along it.
+    point: Vector<T, N>,
+    /// A direction far from the best that bounds d about as well, and its quotient.
+    rival: Option<(Vector<T, N>, T)>,
+    /// About as well: with a quotient up to this.
+    rivalry: T,
     /// For a general Q: the origin is certainly outside of A, and `height` is minus a distance.
     apart: bool,
     /// The lowest key of a facet that was not queued because it was above `ratio` then.
@@ -73,6 +82,10 @@ pub(crate) struct Query<'q, T, const N: usize> {
     support_calls: u32,
     /// Affine dimension of the core.
     pub dimension: usize,
+    /// How the query is being answered.
+    pub plan: Plan,
+    /// Says when to stop.
+    pub interrupt: Option<&'q dyn Fn() -> bool>,
 }
 
 impl<'q, T: Real, const N: usize> Query<'q, T, N> {
@@ -105,12 +118,17 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             height: T::HUGE,
             gauge: T::one(),
             ratio: T::HUGE,
+            point: Vector::zeros(),
+            rival: None,
+            rivalry: -T::HUGE,
             apart: false,
             skipped: T::HUGE,
             exhaustive: false,
             iterations: 0,
             support_calls: 0,
             dimension: N,
+            plan: Plan::Expansion,
+            interrupt: None,
         };
         (query, checked)
     }
@@ -176,7 +194,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
         self.see(&point)?;
         let height = direction.dot(&point);
-        self.note(direction, height)?;
+        self.note(direction, height, &point)?;
         Ok((Vertex { point, witness }, height))
     }
 
@@ -193,31 +211,42 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         Ok(())
     }
 
-    fn note(&mut self, direction: &Vector<T, N>, height: T) -> Result<(), Failure> {
+    fn note(&mut self, direction: &Vector<T, N>, height: T, point: &Vector<T, N>) -> Result<(), Failure> {
         let top = height + self.bounds.radius;
-        if let Some(radius) = self.ball {
-            if height < self.height {
-                (self.direction, self.height, self.gauge, self.ratio) =
-                    (*direction, height, radius, top * self.per_ball);
-            }
-            return Ok(());
-        }
-        if self.apart || self.is_outside(height) {
+        let (gauge, ratio) = if let Some(radius) = self.ball {
+            (radius, top * self.per_ball)
+        } else if self.apart || self.is_outside(height) {
             // Outside, Q has no say: the distance counts.
-            if !self.apart || height < self.height {
-                (self.direction, self.height, self.ratio, self.apart) = (*direction, height, height, true);
+            if !self.apart {
+                (self.apart, self.ratio) = (true, T::HUGE);
             }
-            return Ok(());
-        }
-        let gauge = self.gauge(direction)?;
-        if gauge <= self.gauge_error {
-            return Ok(()); // Q has no extent that way: it bounds nothing.
-        }
-        let ratio = top / gauge;
+            (T::one(), height)
+        } else {
+            let gauge = self.gauge(direction)?;
+            if gauge <= self.gauge_error {
+                return Ok(()); // Q has no extent that way: it bounds nothing.
+            }
+            (gauge, top / gauge)
+        };
+        let apart = |u: &Vector<T, N>, v: &Vector<T, N>| u.dot(v) < T::of(RIVAL_COSINE);
         if ratio < self.ratio {
-            (self.direction, self.height, self.gauge, self.ratio) = (*direction, height, gauge, ratio);
+            self.rivalry = self.tolerance(T::one()).above(ratio);
+            if self.ratio <= self.rivalry && apart(&self.direction, direction) {
+                self.rival = Some((self.direction, self.ratio));
+            }
+            (self.direction, self.point) = (*direction, *point);
+            (self.height, self.gauge, self.ratio) = (height, gauge, ratio);
+        } else if ratio <= self.rivalry && apart(&self.direction, direction) {
+            self.rival = Some((*direction, ratio));
         }
         Ok(())
+    }
+
+    /// A direction well away from the best one that bounds d as tightly, up to the tolerance.
+    fn rival(&self) -> Option<Vector<T, N>> {
+        let (direction, ratio) = self.rival?;
+        let apart = direction.dot(&self.direction) < T::of(RIVAL_COSINE);
+        (apart && ratio <= self.rivalry).then_some(direction)
     }
 
     fn gauge(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
@@ -228,6 +257,40 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
                 if value.finite() && value >= T::zero() { Ok(value) } else { Err(Failure(crate::NOT_FINITE)) }
             }
         }
+    }
+
+    /// s_Q(u), if Q tells.
+    pub fn mapping(&self, direction: &Vector<T, N>) -> Option<Vector<T, N>> {
+        self.q.mapping(direction).filter(|q| finite(q) && q.iter().any(|&x| x != T::zero()))
+    }
+
+    /// How many rays decide the query, for a polytopal Q; else 0.
+    pub fn rays(&self) -> usize {
+        self.q.vertex_count()
+    }
+
+    pub fn ray(&self, index: usize) -> Vector<T, N> {
+        self.q.vertex(index)
+    }
+
+    pub fn inner_radius(&self) -> T {
+        self.q.inner_radius()
+    }
+
+    /// A length that is small beside A, and large beside its rounding.
+    pub fn speck(&self) -> T {
+        self.reach().at_least(T::one()) * T::ROUNDOFF.root()
+    }
+
+    /// Which changes of sign leave both A and Q as they are: bit s for the coordinates named by the bits of s.
+    pub fn mirrors(&self) -> u64 {
+        let both = |signs: u8| self.q.mirrored(signs) && self.a.mirrored(signs);
+        (1..1 << N).filter(|&signs| both(signs)).fold(0, |bits, signs| bits | 1 << signs)
+    }
+
+    /// Lengths below this cannot be told from zero in a plane equation.
+    pub fn resolution(&self) -> T {
+        T::count(8 * N) * T::ROUNDOFF * self.reach
     }
 
     /// The key of a facet, eq. 24: no more than its true distance with respect to Q, up to the margin of the bracket.
@@ -279,149 +342,15 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         height + self.margin() < T::zero()
     }
 
-    /// The upper bound: proved by `direction`.
-    pub fn upper(&self) -> T {
-        if self.height >= T::HUGE {
-            return T::HUGE; // nothing has been asked yet
-        }
-        let margin = self.margin();
-        match self.ball {
-            Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
-            None if self.apart => self.bounds.upper(self.height, margin, T::one(), T::zero()),
-            None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
-        }
-    }
-
-    /// Lower bound from a point of A at this distance: d >= -distance, whether or not the origin is inside.
-    pub fn lower_from_distance(&self, distance: T) -> T {
-        self.bounds.lower_ball(-distance, self.margin(), self.per_ball)
-    }
-
-    /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is
-    /// not certainly inside (module `bounds`).
-    pub fn lower_from_offset(&self, offset: T) -> Option<T> {
-        let margin = self.margin();
-        (offset > margin).then(|| self.bounds.lower_ball(offset, margin, self.per_ball))
-    }
-
-    /// The same for any Q, from (offset, key) of all facets of the surface.
-    pub fn lower_from_facets(&self, facets: impl Iterator<Item = (T, T)>) -> Option<T> {
-        let margin = self.margin();
-        let (mut inradius, mut least) = (T::HUGE, T::HUGE);
-        for (offset, key) in facets {
-            // (e - m) / h, from e and e / h.
-            inradius = inradius.at_most(offset);
-            least = least.at_most(key - key * (margin / offset));
-        }
-        (inradius > margin).then(|| least * (T::one() - T::count(16) * T::ROUNDOFF))
-    }
-
-    /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
-    /// without margins.
-    #[inline]
-    pub fn is_open(&self, key: T) -> bool {
-        let gap = Bracket { lower: key, upper: self.ratio };
-        self.options.threshold.is_none() && !self.tolerance(T::of(SHARPEN)).met(&gap)
-    }
-
-    /// Does the bracket end the query?
-    pub fn verdict(&self, bracket: &Bracket<T>) -> Option<Stop> {
-        if let Some(threshold) = self.options.threshold {
-            if bracket.lower >= threshold {
-                return Some(Stop::Above);
-            }
-            if bracket.upper < threshold {
-                return Some(Stop::Below);
-            }
-        }
-        self.tolerance(T::of(SHARPEN)).met(bracket).then_some(Stop::Met)
-    }
-
-    fn tolerance(&self, share: T) -> Tolerance<T> {
-        Tolerance { absolute: self.options.absolute * share, relative: self.options.relative * share }
-    }
-
-    /// Is this bracket as narrow as asked for?
-    pub fn is_met(&self, bracket: &Bracket<T>) -> bool {
-        self.tolerance(T::one()).met(bracket)
-    }
-
-    /// Is this bracket about as narrow as rounding allows?
-    pub fn is_tight(&self, bracket: &Bracket<T>) -> bool {
-        bracket.upper - bracket.lower <= self.margin() * T::count(64) * self.per_ball
-    }
-
-    /// Counts an iteration; true when the limit is reached.
-    pub fn exhausted(&mut self) -> bool {
+    /// Counts an iteration; tells why there must be none when a limit is reached.
+    pub fn exhausted(&mut self) -> Option<Stop> {
         if self.options.max_iterations != 0 && self.iterations >= self.options.max_iterations {
-            return true;
+            return Some(Stop::Iterations);
+        }
+        if self.interrupt.is_some_and(|interrupt| interrupt()) {
+            return Some(Stop::Interrupted);
         }
         self.iterations = self.iterations.saturating_add(1);
-        false
-    }
-
-    /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
-    /// shortcuts are then over for this query.
-    pub fn verify(&mut self) -> Result<bool, Failure> {
-        if self.exhaustive || !self.a.has_shortcuts() {
-            return Ok(true);
-        }
-        self.exhaustive = true;
-        let direction = self.direction;
-        self.support_calls = self.support_calls.saturating_add(1);
-        let point = self.a.exhaustive(&direction)? * self.scale;
-        self.see(&point)?;
-        let height = direction.dot(&point);
-        if height <= self.height {
-            return Ok(true);
-        }
-        // The shortcut was wrong: what it said is forgotten.
-        (self.height, self.ratio, self.apart) = (T::HUGE, T::HUGE, false);
-        self.note(&direction, height)?;
-        Ok(false)
-    }
-
-    /// The answer for this stop, lower bound and evidence. `polytope` tells what was used.
-    pub fn answer(
-        &mut self,
-        stop: Stop,
-        lower: T,
-        mut witness: Simplex<T, N>,
-        polytope: &Polytope<'_, T, N>,
-    ) -> Answer<T, N> {
-        let stop = match self.verify() {
-            Ok(_) => stop,
-            Err(Failure(code)) => {
-                (self.height, self.gauge) = (T::HUGE, T::one());
-                Stop::Failed(code)
-            }
-        };
-        let upper = self.upper();
-        let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
-        let met = known && self.is_met(&Bracket { lower, upper });
-        // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
-        let stop = match (stop, self.options.threshold) {
-            (Stop::Failed(code), _) => Stop::Failed(code),
-            (_, Some(t)) if lower >= t => Stop::Above,
-            (_, Some(t)) if upper < t => Stop::Below,
-            (Stop::Above | Stop::Below, _) => Stop::Rounding,
-            (stop, _) => stop,
-        };
-        let at_zero = lower <= T::zero() && (met || self.is_tight(&Bracket { lower, upper }));
-        let outcome = stop.outcome(lower, upper, met, at_zero);
-        witness.rescale(T::one() / self.scale);
-        Answer {
-            outcome,
-            lower: self.unscaled(lower, -T::one()),
-            upper: self.unscaled(upper, T::one()),
-            direction: self.direction,
-            witness,
-            dimension: self.dimension,
-            iterations: self.iterations,
-            support_calls: self.support_calls,
-            vertices: polytope.vertices().len(),
-            facets: polytope.peak_facets(),
-            failure: if let Stop::Failed(code) = stop { code } else { 0 },
-        }
+        None
     }
 }

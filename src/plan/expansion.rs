@@ -1,0 +1,226 @@
+//! Expansion of one polytope: Algorithm 1 of Zheng & Yamane.
+
+use crate::answer::Stop;
+use crate::bounds::Bracket;
+use crate::distance::Cloud;
+use crate::polytope::{Facet, Index, Insertion};
+use crate::query::Query;
+use crate::scalar::{Real, Vector, norm};
+use crate::simplex::{Simplex, Vertex};
+use crate::solver::Solver;
+use crate::start::Start;
+use crate::support::Failure;
+
+/// Insertions per dimension that [`Solver::widen`] may spend.
+const WIDENINGS: usize = 8;
+
+/// What the expansion ended with: the lowest key, and its facet if it is known.
+pub(crate) struct Expanded<T> {
+    pub stop: Stop,
+    pub key: T,
+    pub facet: Option<Index>,
+}
+
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// Lines 5 to 9 of Algorithm 1.
+    pub(crate) fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
+        loop {
+            let Some((key, index)) = self.polytope.pop_lowest() else {
+                // No facet below the best upper bound is left.
+                if !self.confirm(query)? {
+                    continue;
+                }
+                let key = query.skipped().at_most(query.ratio());
+                return Ok(Expanded { stop: Stop::Rounding, key, facet: None });
+            };
+            let key = key.at_most(query.skipped());
+            let end = |stop| Ok(Expanded { stop, key, facet: Some(index) });
+            let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { return end(Stop::Rounding) };
+            if let Some(stop) = self.verdict(query, key) {
+                if !self.confirm(query)? {
+                    continue;
+                }
+                return end(stop);
+            }
+            if let Some(stop) = query.exhausted() {
+                return end(stop);
+            }
+            let (vertex, height) = query.support(&normal)?;
+            if query.is_outside(height) {
+                if !self.confirm(query)? {
+                    continue;
+                }
+                return end(Stop::Outside);
+            }
+            let tolerance = self.polytope.resolution();
+            // On the boundary of A, as far as arithmetic can tell?
+            let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
+            if let Some(stop) = self.verdict(query, key).or(final_facet) {
+                if !self.confirm(query)? {
+                    continue;
+                }
+                return end(stop);
+            }
+            match self.polytope.insert(index, vertex, tolerance) {
+                Some(Insertion::Done) => self.rate_fresh(query)?,
+                Some(Insertion::Full) => return end(Stop::Capacity),
+                Some(Insertion::Rejected) | None => return end(Stop::Rounding),
+            }
+        }
+    }
+
+    /// Checks the best upper bound without A's shortcuts. When it rises, facets that were above it before matter
+    /// again, and the search goes on; that happens once at most.
+    fn confirm(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
+        if query.verify()? {
+            return Ok(true);
+        }
+        query.forget_skipped();
+        if let Some(lowest) = self.polytope.requeue(query.ratio()) {
+            query.skip(lowest);
+        }
+        Ok(false)
+    }
+
+    /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a
+    /// pass over the facets.
+    fn verdict(&self, query: &Query<'_, T, N>, key: T) -> Option<Stop> {
+        if query.is_open(key) {
+            return None;
+        }
+        let upper = query.upper();
+        let stop = query.verdict(&Bracket { lower: key, upper })?;
+        if stop == Stop::Below {
+            return Some(stop);
+        }
+        query.verdict(&Bracket { lower: self.lower(query, key)?, upper })
+    }
+
+    /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
+    /// inside.
+    pub(crate) fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
+        if !self.polytope.is_sound() {
+            return None;
+        }
+        match query.ball {
+            Some(radius) => {
+                // Back from the key to the offset, rounded down: four roundings there and back.
+                let whole = key * radius;
+                query.lower_from_offset(whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF), query.margin())
+            }
+            None => {
+                let facets = self.polytope.facets().map(|f| (f.offset, f.key));
+                query.lower_from_facets(facets, query.margin())
+            },
+        }
+    }
+
+    /// Line 7: keys of the new facets. One above the best upper bound will never be the lowest that matters.
+    fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
+        while let Some(index) = self.polytope.next_fresh() {
+            let Some(facet) = self.polytope.facet(index) else { break };
+            let key = query.key(&facet.normal, facet.offset)?;
+            if !self.polytope.set_key(index, key, key < query.ratio()) {
+                query.skip(key);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lines 1 to 3: the first simplex. A stop instead when A is flat, or when it certainly does not contain the
+    /// origin.
+    pub(crate) fn start(&mut self, query: &mut Query<'_, T, N>, first: &Vector<T, N>) -> Result<Option<Stop>, Failure> {
+        let mut start = Start::new(*first);
+        while start.missing() > 0 {
+            let direction = start.direction();
+            let (mut vertex, height) = query.support(&direction)?;
+            if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
+                return Ok(Some(Stop::Outside));
+            }
+            if start.progress(&direction, &vertex.point) < query.reach() * T::of(0.01) {
+                let (other, height) = query.support(&-direction)?;
+                if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
+                    return Ok(Some(Stop::Outside));
+                }
+                if start.progress(&direction, &other.point) > start.progress(&direction, &vertex.point) {
+                    vertex = other;
+                }
+            }
+            let thin = (self.polytope.resolution() + query.margin()) * T::count(4);
+            if start.accept(&vertex.point, thin) {
+                if self.polytope.add_vertex(vertex).is_none() {
+                    return Ok(Some(Stop::Capacity));
+                }
+            } else {
+                start.flat(&direction);
+            }
+        }
+        query.dimension = start.dimension();
+        if start.dimension() < N {
+            return Ok(Some(Stop::Flat));
+        }
+        if self.polytope.make_simplex(&start.normals()).is_none() {
+            return Ok(Some(Stop::Capacity));
+        }
+        self.rate_fresh(query)?;
+        Ok(None)
+    }
+
+    /// For a Q that is not a ball, expansion towards a few directions of Q can leave facets so near to the origin that
+    /// the margin swallows them, and the bracket open. Then the nearest facets are pushed out too.
+    pub(crate) fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<(), Failure> {
+        if query.ball.is_some() || stop != Stop::Rounding {
+            return Ok(());
+        }
+        let bracket = |solver: &Self, query: &Query<'_, T, N>| {
+            solver.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
+        };
+        for _ in 0..WIDENINGS * N {
+            if bracket(self, query).is_some_and(|b| query.is_met(&b)) {
+                return Ok(());
+            }
+            let Some((index, normal, offset)) = self.polytope.nearest_facet() else { return Ok(()) };
+            let (vertex, height) = query.support(&normal)?;
+            let tolerance = self.polytope.resolution();
+            if height - offset <= tolerance + tolerance {
+                return Ok(());
+            }
+            match self.polytope.insert(index, vertex, tolerance) {
+                Some(Insertion::Done) => self.rate_fresh(query)?,
+                _ => return Ok(()),
+            }
+        }
+        Ok(())
+    }
+
+    /// The simplex of the surface that touches the largest d Q. For a ball, the one around the foot of the perpendicular on
+    /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
+    /// the plane, or belong to another of several minima.
+    pub(crate) fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
+        let lowest = match facet {
+            Some(index) => self.polytope.facet(index),
+            None => self.polytope.lowest(),
+        };
+        let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
+        let mut simplex = self.polytope.corners(facet);
+        if query.ball.is_none() {
+            return simplex;
+        }
+        let foot = query.foot();
+        let resolution = self.polytope.resolution();
+        simplex.translate(&-foot);
+        simplex.minimize(resolution);
+        let miss = simplex.point();
+        let near = resolution * T::count(64) + query.options.relative.at_least(T::zero()).root() * norm(&foot);
+        if miss.dot(&miss) > near * near {
+            let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
+            if let Some(found) = cloud.nearest(&facet.normal)
+                && found.distance * found.distance < miss.dot(&miss)
+            {
+                simplex = found.simplex;
+            }
+        }
+        simplex.translate(&foot);
+        simplex
+    }
+}

@@ -1,0 +1,14 @@
+//! The plans of a query: what it needs is done, and nothing else.
+//!
+//! ```text
+//!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
+//!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
+//!      ray                        the simplex that a ray pierces
+//! ```
+
+mod cone;
+mod conewise;
+pub(crate) mod expansion;
+mod ray;
+pub(crate) mod rays;
+mod shoot;

@@ -1,0 +1,147 @@
+//! Ray shooting: how far along q until the ray leaves A.
+//!
+//! The ray from the origin along q leaves A at t q, t = max { t : t q in A }. With the origin in A that is the linear program
+//!
+//! ```text
+//! 1 / t = min Σ w_i    such that    Σ w_i a_i = q,  w >= 0,  a_i in A
+//! ```
+//!
+//! over all points of A, solved by column generation, the revised simplex method with N points and the inverse of
+//! their matrix: the plane y.x = 1 through the N corners is crossed by the ray at 1 / Σ w, the support point along y is beyond
+//! it (or the crossing is final), and replaces the corner that the ratio test names. In the picture: of the polytope
+//! expansion only the facet that the ray pierces is kept. No hull, N^2 numbers, and every step raises the crossing (lower bound) and gives a
+//! plane (upper bound, h_A(y) / y.q).
+//!
+//! The first corners are *artificial*: points at a tiny distance along the axes, in the orthant of q. If the ball of that
+//! radius is in A they all leave; while one carries weight there is no lower bound.
+//!
+//! # Rounding
+//!
+//! The inverse is updated, and its error is not bounded; it does not need to be. The weights >= 0 stand for a point
+//! x = Σ w a / Σ w of A, whatever they are, and t q is off x by what is measured ([`Ray::reach`]).
+
+use crate::scalar::{Real, Vector, norm};
+use crate::simplex::{Corner, Simplex, Vertex};
+use heapless::Vec;
+use nalgebra::SMatrix;
+
+/// A ray and the simplex that it pierces.
+#[derive(Clone)]
+pub(crate) struct Ray<T, const N: usize> {
+    target: Vector<T, N>,
+    corners: [Vertex<T, N>; N],
+    artificial: [bool; N],
+    inverse: SMatrix<T, N, N>,
+    /// inverse * target, >= 0.
+    weights: Vector<T, N>,
+}
+
+impl<T: Real, const N: usize> Ray<T, N> {
+    /// A ray along `target` from artificial corners at the distance `size` > 0.
+    pub fn new(target: &Vector<T, N>, size: T) -> Self {
+        let mut ray = Ray {
+            target: *target,
+            corners: [Vertex::empty(); N],
+            artificial: [true; N],
+            inverse: SMatrix::zeros(),
+            weights: target.map(|x| x.abs() / size),
+        };
+        for i in 0..N {
+            let along = if target[i] < T::zero() { -size } else { size };
+            ray.corners[i].point[i] = along;
+            ray.inverse[(i, i)] = T::one() / along;
+        }
+        ray
+    }
+
+    /// The ray along another target, if that pierces the same simplex.
+    pub fn aimed(mut self, target: &Vector<T, N>) -> Option<Self> {
+        self.target = *target;
+        self.weights = self.inverse * target;
+        self.weights.iter().all(|&w| w >= T::zero()).then_some(self)
+    }
+
+    /// The plane y.x = 1 through the corners.
+    pub fn plane(&self) -> Vector<T, N> {
+        self.inverse.row_sum_tr()
+    }
+
+    /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
+    pub fn enter(&mut self, vertex: &Vertex<T, N>) -> bool {
+        let shares = self.inverse * vertex.point;
+        let largest = shares.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+        let threshold = largest * (T::count(16 * N) * T::ROUNDOFF);
+        let mut leaving: Option<(usize, T)> = None;
+        for i in 0..N {
+            if shares[i] > threshold {
+                let step = self.weights[i] / shares[i];
+                if leaving.is_none_or(|(j, least)| step < least || step == least && shares[i] > shares[j.min(N - 1)]) {
+                    leaving = Some((i, step));
+                }
+            }
+        }
+        let Some((out, step)) = leaving else { return false };
+        for i in 0..N {
+            if i == out {
+                let pivot = T::one() / shares[i];
+                self.corners[i] = *vertex;
+                self.artificial[i] = false;
+                self.weights[i] = step;
+                for j in 0..N {
+                    self.inverse[(i, j)] *= pivot;
+                }
+            }
+        }
+        let row = self.inverse.row(out.min(N - 1)).into_owned();
+        for i in 0..N {
+            if i != out {
+                self.weights[i] = (self.weights[i] - shares[i] * step).at_least(T::zero());
+                for j in 0..N {
+                    self.inverse[(i, j)] -= shares[i] * row[j];
+                }
+            }
+        }
+        true
+    }
+
+    /// (t, e): t q is at most e off a point of conv A, up to the rounding of one sum. `None` while an artificial corner
+    /// carries weight.
+    pub fn reach(&self) -> Option<(T, T)> {
+        let carried = (0..N).all(|i| !self.artificial[i] || self.weights[i] == T::zero());
+        let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
+        if !carried || !(sum > T::zero()) {
+            return None;
+        }
+        let t = T::one() / sum;
+        let miss = self.point(t) - self.target * t;
+        Some((t, norm(&miss)))
+    }
+
+    fn point(&self, t: T) -> Vector<T, N> {
+        let mut point = Vector::zeros();
+        for i in 0..N {
+            point += self.corners[i].point * (self.weights[i] * t);
+        }
+        point
+    }
+
+    /// One step of Newton's iteration for the inverse, X (2 - B X), after which the weights are as good as rounding allows.
+    pub fn polish(&mut self) {
+        let basis = SMatrix::<T, N, N>::from_fn(|i, j| self.corners[j].point[i]);
+        let miss = SMatrix::<T, N, N>::identity() - basis * self.inverse;
+        self.inverse += self.inverse * miss;
+        self.weights = (self.inverse * self.target).map(|w| w.at_least(T::zero()));
+    }
+
+    /// The pierced simplex; its weights are those of the crossing.
+    pub fn simplex(&self) -> Simplex<T, N> {
+        let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
+        let mut corners = Vec::new();
+        for i in 0..N {
+            if !self.artificial[i] {
+                let _ = corners.push(Corner { vertex: self.corners[i], weight: self.weights[i] / sum });
+            }
+        }
+        Simplex { corners }
+    }
+}

@@ -1,0 +1,122 @@
+//! Polytopal Q: one convex problem per vertex of Q instead of a hull.
+//!
+//! λQ lies in A when λ times each vertex of Q does, so d is the smallest of the crossings t_v of the rays along the vertices
+//! ([`ray`](super::ray)). Every plane that a ray meets bounds d by h_A / h_Q with the whole of Q in the denominator, so one ray's upper bounds
+//! end the others early: a ray is done when its crossing is beyond what the tolerance asks of the best bound so far.
+//!
+//! # The lower bound
+//!
+//! The crossings are those of points near A: with m the support function's error, the rounding and what [`Ray::reach`]
+//! measures, t_v v is in A + mB for every vertex v; let λ = min t_v.
+//!
+//! * Q contains a ball of radius ρ around the origin: then λQ is in A + mB, and mB in (m/ρ)Q. What is added to both sides of an
+//!   inclusion of compact convex sets can be taken away again, so d >= λ - m/ρ.
+//! * Otherwise Q (a segment, say) says nothing about the other directions, and A must have a margin of its own: rays along the axes
+//!   and back along their mean show a ball of radius r in A + mB, so A contains the ball of radius
+//!   r - m, and the convex combination of λv + mB and that ball puts λ (1 - m / r) v in A.
+
+use crate::answer::Stop;
+use crate::query::Query;
+use super::ray::Ray;
+use crate::scalar::{Real, Vector};
+use super::shoot::{Shot, shoot};
+use crate::simplex::Simplex;
+use crate::support::Failure;
+
+/// What the rays have shown.
+pub(crate) struct Crossings<T, const N: usize> {
+    pub stop: Stop,
+    pub lower: T,
+    pub witness: Simplex<T, N>,
+}
+
+/// d by one ray per vertex of Q. `None` when rays cannot decide: Q is not polytopal, or the origin is not certainly inside A.
+pub(crate) fn solve_rays<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+) -> Result<Option<Crossings<T, N>>, Failure> {
+    let count = query.rays();
+    if count == 0 {
+        return Ok(None);
+    }
+    let inner = query.inner_radius();
+    let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
+    let mut last: Option<Ray<T, N>> = None;
+    for index in 0..count {
+        let target = query.ray(index);
+        let aimed = last.take().and_then(|ray| ray.aimed(&target));
+        let mut ray = aimed.unwrap_or_else(|| Ray::new(&target, query.speck()));
+        match shoot(query, &mut ray, T::zero(), |query| query.level(T::zero(), 8))? {
+            Shot::Hit => {}
+            Shot::Stopped(_) => return Ok(None),
+        }
+        if !rays.take(query, &mut ray) {
+            return Ok(None);
+        }
+        last = Some(ray);
+    }
+    let margin = query.margin() + rays.error;
+    let lower = if inner > T::zero() {
+        rays.least - margin / inner
+    } else {
+        match ball_inside(query)? {
+            Some(radius) if radius > margin => rays.least - rays.least * (margin / radius),
+            _ => return Ok(None),
+        }
+    };
+    let Some(witness) = rays.witness else { return Ok(None) };
+    let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
+    Ok(Some(Crossings { stop: Stop::Met, lower, witness }))
+}
+
+/// The least crossing of several rays.
+struct Rays<T, const N: usize> {
+    least: T,
+    /// How far the points may be off A beside the margin.
+    error: T,
+    witness: Option<Simplex<T, N>>,
+}
+
+impl<T: Real, const N: usize> Rays<T, N> {
+    fn take(&mut self, query: &Query<'_, T, N>, ray: &mut Ray<T, N>) -> bool {
+        let Some(mut reach) = ray.reach() else { return false };
+        if reach.1 > query.resolution() {
+            ray.polish();
+            match ray.reach() {
+                Some(better) => reach = better,
+                None => return false,
+            }
+        }
+        let (t, miss) = reach;
+        self.error = self.error.at_least(miss);
+        if t < self.least {
+            self.least = t;
+            self.witness = Some(ray.simplex());
+        }
+        true
+    }
+}
+
+/// Radius of a ball around the origin in A, up to the margin: the points e_i and minus their mean, scaled to their crossings,
+/// have it in their hull.
+fn ball_inside<T: Real, const N: usize>(query: &mut Query<'_, T, N>) -> Result<Option<T>, Failure> {
+    let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
+    let root = T::count(N).root();
+    for index in 0..=N {
+        let target = Vector::<T, N>::from_fn(|i, _| match index {
+            _ if index == N => -T::one() / root,
+            _ if i == index => T::one(),
+            _ => T::zero(),
+        });
+        let mut ray = Ray::new(&target, query.speck());
+        // Anything that is not small will do.
+        let enough = query.reach() * T::of(0.05);
+        match shoot(query, &mut ray, T::of(0.1), |_| enough)? {
+            Shot::Hit if rays.take(query, &mut ray) => {}
+            _ => return Ok(None),
+        }
+    }
+    // The facet opposite e_k of the simplex { e_i, -(1 .. 1) / sqrt(N) } has the normal with 1 in all places but k.
+    let tilt = root + T::count(N - 1);
+    let inradius = T::one() / (T::count(N - 1) + tilt * tilt).root();
+    Ok(Some(rays.least * inradius - rays.error))
+}

@@ -1,0 +1,84 @@
+//! Rays shot at A by a query: for a polytopal Q they are the whole answer, for any other they find upper bounds.
+
+use crate::answer::Stop;
+use crate::query::Query;
+use super::ray::Ray;
+use crate::scalar::{Real, Vector, norm};
+use crate::support::Failure;
+
+/// More steps than any ray takes: rounding ends them earlier.
+const STEPS: usize = 512;
+
+/// Where a shot ended.
+pub(crate) enum Shot {
+    /// The crossing is known as well as asked for, or as arithmetic allows.
+    Hit,
+    Stopped(Stop),
+}
+
+/// Shoots until the crossing is beyond `level`, or known to a share `accuracy` of its distance.
+pub(crate) fn shoot<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    ray: &mut Ray<T, N>,
+    accuracy: T,
+    level: impl Fn(&Query<'_, T, N>) -> T,
+) -> Result<Shot, Failure> {
+    for _ in 0..STEPS {
+        if let Some((t, _)) = ray.reach()
+            && t >= level(query)
+        {
+            break;
+        }
+        let plane = ray.plane();
+        let length = norm(&plane);
+        if !(length > T::zero()) || !length.finite() {
+            break;
+        }
+        let direction = plane * (T::one() / length);
+        let (vertex, height) = query.support(&direction)?;
+        if query.is_outside(height) {
+            return Ok(Shot::Stopped(Stop::Outside));
+        }
+        let offset = T::one() / length;
+        let beyond = height - offset;
+        if beyond <= query.resolution().at_least(accuracy * offset) {
+            break;
+        }
+        if let Some(stop) = query.exhausted() {
+            return Ok(Shot::Stopped(stop));
+        }
+        if !ray.enter(&vertex) {
+            break;
+        }
+    }
+    Ok(Shot::Hit)
+}
+
+/// The polar power iteration: from a direction u to the normal of A where the ray along s_Q(u) leaves it, which bounds d at least as
+/// tightly; a local minimum of h_A / h_Q is what it leaves unchanged.
+///
+/// Why it descends: let t be the crossing along q = s_Q(u) and v the normal there. Then h_A(v) = t v.q <= t h_Q(v), and
+/// h_A(u) >= t u.q = t h_Q(u). So h_A(v) / h_Q(v) <= t <= h_A(u) / h_Q(u).
+pub(crate) fn descend<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    from: &Vector<T, N>,
+) -> Result<Option<Stop>, Failure> {
+    let mut direction = *from;
+    let mut last: Option<Ray<T, N>> = None;
+    for _ in 0..STEPS {
+        let Some(target) = query.mapping(&direction) else { return Ok(None) };
+        let before = query.ratio();
+        let aimed = last.take().and_then(|ray| ray.aimed(&target));
+        let mut ray = aimed.unwrap_or_else(|| Ray::new(&target, query.speck()));
+        if let Shot::Stopped(stop) = shoot(query, &mut ray, T::of(1e-6), |_| T::HUGE)? {
+            return Ok(Some(stop));
+        }
+        let plane = ray.plane();
+        direction = plane * (T::one() / norm(&plane));
+        if !(query.ratio() < before - before * query.options.relative.at_least(T::of(1e-9))) {
+            break;
+        }
+        last = Some(ray);
+    }
+    Ok(None)
+}

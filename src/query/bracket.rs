@@ -1,0 +1,97 @@
+//! What the query knows of d: bounds with their rounding, and when they are enough.
+
+use super::Query;
+use crate::answer::Stop;
+use crate::bounds::{Bracket, Tolerance};
+use crate::scalar::Real;
+
+impl<T: Real, const N: usize> Query<'_, T, N> {
+    /// The upper bound: proved by `direction`.
+    pub fn upper(&self) -> T {
+        if self.height >= T::HUGE {
+            return T::HUGE; // nothing has been asked yet
+        }
+        let margin = self.margin();
+        match self.ball {
+            Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
+            None if self.apart => self.bounds.upper(self.height, margin, T::one(), T::zero()),
+            None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
+        }
+    }
+
+    /// Lower bound from a point of A at this distance: d >= -distance, whether or not the origin is inside.
+    pub fn lower_from_distance(&self, distance: T) -> T {
+        self.bounds.lower_ball(-distance, self.margin(), self.per_ball)
+    }
+
+    /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is
+    /// not certainly inside (module `bounds`). Heights are known up to `margin`.
+    pub fn lower_from_offset(&self, offset: T, margin: T) -> Option<T> {
+        (offset > margin).then(|| self.bounds.lower_ball(offset, margin, self.per_ball))
+    }
+
+    /// The same for any Q, from (offset, key) of all facets of a surface whose heights are known up to `margin`.
+    pub fn lower_from_facets(&self, facets: impl Iterator<Item = (T, T)>, margin: T) -> Option<T> {
+        let (mut inradius, mut least) = (T::HUGE, T::HUGE);
+        for (offset, key) in facets {
+            // (e - m) / h, from e and e / h.
+            inradius = inradius.at_most(offset);
+            least = least.at_most(key - key * (margin / offset));
+        }
+        (inradius > margin).then(|| least * (T::one() - T::count(16) * T::ROUNDOFF))
+    }
+
+    /// A lower end that would end the query now, with room for so many margins; at least a share `gap` below the upper end.
+    pub fn level(&self, gap: T, margins: usize) -> T {
+        let reserve = T::count(margins + 2) * self.margin() * self.per_ball;
+        let met = self.tolerance(T::of(0.99)).below(self.ratio) + reserve;
+        let enough = self.options.threshold.map_or(met, |threshold| met.at_most(threshold + reserve));
+        enough.at_most(self.ratio - self.ratio * gap)
+    }
+
+    /// Is d certainly below the threshold?
+    pub fn is_below(&self) -> bool {
+        self.options.threshold.is_some_and(|threshold| self.upper() < threshold)
+    }
+
+    /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
+    /// without margins.
+    #[inline]
+    pub fn is_open(&self, key: T) -> bool {
+        let gap = Bracket { lower: key, upper: self.ratio };
+        self.options.threshold.is_none() && !self.tolerance(Self::sharpness()).met(&gap)
+    }
+
+    /// Does the bracket end the query?
+    pub fn verdict(&self, bracket: &Bracket<T>) -> Option<Stop> {
+        if let Some(threshold) = self.options.threshold {
+            if bracket.lower >= threshold {
+                return Some(Stop::Above);
+            }
+            if bracket.upper < threshold {
+                return Some(Stop::Below);
+            }
+        }
+        self.tolerance(Self::sharpness()).met(bracket).then_some(Stop::Met)
+    }
+
+    /// In space, a bracket of width ε pins the direction of a smooth minimum to about sqrt(ε) only. Running to a quarter of the
+    /// tolerance halves that error and costs an iteration at most. In higher dimensions it would multiply the work.
+    fn sharpness() -> T {
+        if N <= 3 { T::of(0.25) } else { T::one() }
+    }
+
+    pub(super) fn tolerance(&self, share: T) -> Tolerance<T> {
+        Tolerance { absolute: self.options.absolute * share, relative: self.options.relative * share }
+    }
+
+    /// Is this bracket as narrow as asked for?
+    pub fn is_met(&self, bracket: &Bracket<T>) -> bool {
+        self.tolerance(T::one()).met(bracket)
+    }
+
+    /// Is this bracket about as narrow as rounding allows?
+    pub fn is_tight(&self, bracket: &Bracket<T>) -> bool {
+        bracket.upper - bracket.lower <= self.margin() * T::count(64) * self.per_ball
+    }
+}

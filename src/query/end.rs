@@ -1,0 +1,76 @@
+//! How a query becomes an [`Answer`].
+
+use super::Query;
+use crate::answer::{Answer, Stop};
+use crate::bounds::Bracket;
+use crate::scalar::Real;
+use crate::simplex::Simplex;
+use crate::support::Failure;
+
+impl<T: Real, const N: usize> Query<'_, T, N> {
+    /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
+    /// shortcuts are then over for this query.
+    pub fn verify(&mut self) -> Result<bool, Failure> {
+        if self.exhaustive || !self.a.has_shortcuts() {
+            return Ok(true);
+        }
+        self.exhaustive = true;
+        let direction = self.direction;
+        self.support_calls = self.support_calls.saturating_add(1);
+        let point = self.a.exhaustive(&direction)? * self.scale;
+        self.see(&point)?;
+        let height = direction.dot(&point);
+        if height <= self.height {
+            return Ok(true);
+        }
+        // The shortcut was wrong: what it said is forgotten.
+        (self.height, self.ratio, self.apart) = (T::HUGE, T::HUGE, false);
+        self.rival = None;
+        self.note(&direction, height, &point)?;
+        Ok(false)
+    }
+
+    /// The answer for this stop, lower bound and evidence; whoever used memory adds how much.
+    pub fn answer(&mut self, stop: Stop, lower: T, mut witness: Simplex<T, N>) -> Answer<T, N> {
+        let stop = match self.verify() {
+            Ok(_) => stop,
+            Err(Failure(code)) => {
+                (self.height, self.gauge) = (T::HUGE, T::one());
+                Stop::Failed(code)
+            }
+        };
+        let upper = self.upper();
+        let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
+        let met = known && self.is_met(&Bracket { lower, upper });
+        // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
+        let stop = match (stop, self.options.threshold) {
+            (Stop::Failed(code), _) => Stop::Failed(code),
+            (_, Some(t)) if lower >= t => Stop::Above,
+            (_, Some(t)) if upper < t => Stop::Below,
+            (Stop::Above | Stop::Below, _) => Stop::Rounding,
+            (stop, _) => stop,
+        };
+        let at_zero = lower <= T::zero() && (met || self.is_tight(&Bracket { lower, upper }));
+        let outcome = stop.outcome(lower, upper, met, at_zero);
+        witness.rescale(T::one() / self.scale);
+        Answer {
+            outcome,
+            lower: self.unscaled(lower, -T::one()),
+            upper: self.unscaled(upper, T::one()),
+            direction: self.direction,
+            support: (self.point + self.direction * self.bounds.radius) / self.scale,
+            gauge: if self.apart { self.gauge(&self.direction).unwrap_or(T::zero()) } else { self.gauge },
+            rival: self.rival(),
+            witness,
+            plan: self.plan,
+            dimension: self.dimension,
+            iterations: self.iterations,
+            support_calls: self.support_calls,
+            vertices: 0,
+            facets: 0,
+            cones: 0,
+            splits: 0,
+            failure: if let Stop::Failed(code) = stop { code } else { 0 },
+        }
+    }
+}
