@@ -7,7 +7,7 @@ mod common;
 use common::dd::v3;
 use common::dice::Dice;
 use common::hull::{ExactHull, signed_depth};
-use common::memory::{Memory, Seen, broken_promise};
+use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
 use qdist::support::{BoxShape, Ellipsoid, Linear, Margin, Points, Rigid, Support};
@@ -134,7 +134,7 @@ fn limits<T: Real, const N: usize>() {
     for k in problems::<T, N>(31) {
         let mut best = (f64::MIN, f64::MAX);
         for limit in 1..=40 {
-            let options = Options { max_iterations: limit, relative: T::zero(), ..Options::default() };
+            let options = Options { max_iterations: limit, relative: T::zero(), ..brisk() };
             let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
             holds(&k, &s, &options, size);
             let rounding = 4096.0 * T::ROUNDOFF.to_f64() * (1.0 + k.d.abs()) * N as f64;
@@ -157,7 +157,7 @@ fn capacities<T: Real, const N: usize>() {
             for facets in [0, 1, 2, 5, 11, 40, 200] {
                 let size = (N + 1 + extra, 2 * N + facets);
                 let mut memory = Memory::new::<T, N>(size.0, size.1);
-                let options = Options { relative: T::of(1e-9), ..Options::default() };
+                let options = Options { relative: T::of(1e-9), ..brisk() };
                 let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
                 holds(&k, &s, &options, size);
             }
@@ -169,7 +169,7 @@ every_type_and_dimension!(every_capacity_leaves_a_true_bracket, capacities);
 /// As much memory as the answer says it used is enough for the same answer.
 fn used_memory<T: Real, const N: usize>() {
     for k in problems::<T, N>(33) {
-        let options = Options { relative: T::of(1e-3), max_iterations: 60, ..Options::default() };
+        let options = Options { relative: T::of(1e-3), max_iterations: 60, ..brisk() };
         let mut memory = Memory::new::<T, N>(256, 4096);
         let full = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
         let size = (full.vertices.max(N + 1), full.facets.max(2 * N));
@@ -194,7 +194,7 @@ fn thresholds<T: Real, const N: usize>() {
                         threshold: Some(T::of(threshold)),
                         relative: T::of(relative),
                         max_iterations: limit,
-                        ..Options::default()
+                        ..brisk()
                     };
                     let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
                     holds(&k, &s, &options, size);
@@ -244,7 +244,7 @@ fn tolerances<T: Real, const N: usize>() {
                     _ => Some(vector(dice.direction::<N>())),
                 };
                 let options =
-                    Options { absolute: T::of(absolute), relative: T::of(relative), guess, ..Options::default() };
+                    Options { absolute: T::of(absolute), relative: T::of(relative), guess, ..brisk() };
                 let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
                 holds(&k, &s, &options, size);
             }
@@ -259,7 +259,7 @@ fn reuse<T: Real, const N: usize>() {
     let mut used = Memory::new::<T, N>(size.0, size.1);
     let mut solver = used.solver::<T, N>();
     for k in problems::<T, N>(36) {
-        let options = Options::default();
+        let options = brisk();
         let s = Seen::from(&solver.solve(&*k.set, &*k.gauge, &options));
         holds(&k, &s, &options, size);
         let mut fresh = Memory::new::<T, N>(size.0, size.1);
@@ -302,19 +302,19 @@ fn pairs<T: Real>() {
             assert!(s.lower <= d + 4e-16 * d.abs() && d - 4e-16 * d.abs() <= s.upper, "{tell}");
         };
         for limit in 1..=20 {
-            run(Options { max_iterations: limit, relative: T::zero(), ..Options::default() }, 64, 128);
+            run(Options { max_iterations: limit, relative: T::zero(), ..brisk() }, 64, 128);
         }
         for extra in 0..12 {
-            run(Options { relative: T::zero(), ..Options::default() }, 4 + extra, 6 + 2 * extra);
-            run(Options { relative: T::zero(), ..Options::default() }, 4 + extra, 200);
-            run(Options { relative: T::zero(), ..Options::default() }, 100, 6 + extra);
+            run(Options { relative: T::zero(), ..brisk() }, 4 + extra, 6 + 2 * extra);
+            run(Options { relative: T::zero(), ..brisk() }, 4 + extra, 200);
+            run(Options { relative: T::zero(), ..brisk() }, 100, 6 + extra);
         }
         for offset in [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 0.1, -0.1] {
-            run(Options { threshold: Some(T::of(d + offset)), ..Options::default() }, 64, 128);
+            run(Options { threshold: Some(T::of(d + offset)), ..brisk() }, 64, 128);
         }
         for scale in [1e-20, 1.0, 1e20] {
             let guess = Some(Vector::from(dice.direction::<3>().map(|x| T::of(x * scale))));
-            run(Options { guess, ..Options::default() }, 64, 128);
+            run(Options { guess, ..brisk() }, 64, 128);
         }
     }
 }

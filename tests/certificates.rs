@@ -12,7 +12,7 @@ mod common;
 use common::dd::{BLUR, Dd, dot, norm, v3};
 use common::dice::Dice;
 use common::exact::{outside, pair_value, searched_upper};
-use common::memory::{Memory, Seen, broken_promise};
+use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
@@ -106,7 +106,7 @@ fn general<T: Real, const N: usize>() {
         };
         let moved = Rigid::new(&*shape, SMatrix::identity(), vector::<T, N>(t)).unwrap();
         let limit = dice.pick(&[0, 0, 1, 4, 12]);
-        let options = Options { max_iterations: limit, ..Options::default() };
+        let options = Options { max_iterations: limit, ..brisk() };
         let (vertices, facets) = (N + 1 + dice.below(60), 2 * N + dice.below(800));
         let mut memory = Memory::new::<T, N>(vertices, facets);
         let answer: Answer<T, N> = memory.solver::<T, N>().solve(&moved, &*gauge, &options);
@@ -230,7 +230,7 @@ fn bodies<T: Real>() {
                 let b = random_body::<T>(other, &mut dice, shift);
                 let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
                 let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
-                let options = Options::default();
+                let options = brisk();
                 let mut memory = Memory::new::<T, 3>(256, 512);
                 let r: Depth<T> =
                     memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
@@ -335,7 +335,7 @@ fn skewed<T: Real>() {
                 }
                 let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
                 let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
-                let options = Options::default();
+                let options = brisk();
                 let mut memory = Memory::new::<T, 3>(256, 512);
                 let r: Depth<T> =
                     memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);

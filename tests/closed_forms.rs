@@ -6,7 +6,7 @@
 mod common;
 
 use common::dice::Dice;
-use common::memory::{Memory, Seen, broken_promise};
+use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
 use qdist::support::{
@@ -59,7 +59,7 @@ fn solve<T: Real, const N: usize>(a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, op
 }
 
 fn check<T: Real, const N: usize>(what: &str, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, d: f64, want: Want) {
-    let answer = solve(a, q, &Options::default());
+    let answer = solve(a, q, &brisk());
     holds::<T>(
         &format!("{what} ({} dimensions, roundoff {:e})", N, T::ROUNDOFF.to_f64()),
         &Seen::from(&answer),
@@ -242,7 +242,7 @@ fn parallelotopes<T: Real, const N: usize>() {
         let facets = |h: &dyn Fn(&[f64; N]) -> f64| least::<N>(|i| 1.0 / h(&std::array::from_fn(|j| inverse[(i, j)])));
         // The inverse is off by rounding, times the condition number of M (some 10).
         let blurred = |what: &str, q: &dyn Gauge<T, N>, d: f64| {
-            let s = Seen::from(&solve(&set, q, &Options::default()));
+            let s = Seen::from(&solve(&set, q, &brisk()));
             let blur = 1e-13 * d;
             assert!(s.lower <= d + blur && d - blur <= s.upper, "{what}: {d:e} is not in {s:?}");
             assert!(s.upper - s.lower <= T::RELATIVE_TOLERANCE.to_f64() * 1.001 * d, "{what}: {s:?}");
@@ -299,7 +299,7 @@ fn flats<T: Real, const N: usize>() {
     for dimension in 0..N {
         let h: [f64; N] = std::array::from_fn(|i| if i < dimension { 1.0 + i as f64 / 4.0 } else { 0.0 });
         let flat = BoxShape::new(vector::<T, N>(h)).unwrap();
-        let answer = solve(&flat, &Ball::unit(), &Options::default());
+        let answer = solve(&flat, &Ball::unit(), &brisk());
         holds::<T>("flat box", &Seen::from(&answer), 0.0, Want::Roundoffs(400.0, length(&h)));
         assert!(
             matches!(answer.outcome, Outcome::Degenerate | Outcome::Touching),
@@ -317,7 +317,7 @@ fn flats<T: Real, const N: usize>() {
         let beside = Rigid::new(flat, SMatrix::identity(), vector::<T, N>(t)).unwrap();
         let gap = 3.0 - if dimension == N { h[N - 1] } else { 0.0 };
         let sideways = if dimension == 0 { 0.25 } else { 0.0 };
-        let s = Seen::from(&solve(&beside, &Ball::unit(), &Options::default()));
+        let s = Seen::from(&solve(&beside, &Ball::unit(), &brisk()));
         holds::<T>("beside a flat box", &s, -f64::hypot(gap, sideways), asked::<T>());
         assert_eq!(s.outcome, Outcome::Separated);
         if dimension > 0 {
@@ -325,7 +325,7 @@ fn flats<T: Real, const N: usize>() {
             let mut t = [0.0; N];
             t[0] = 4.0;
             let past = Rigid::new(flat, SMatrix::identity(), vector::<T, N>(t)).unwrap();
-            let s = Seen::from(&solve(&past, &Ball::unit(), &Options::default()));
+            let s = Seen::from(&solve(&past, &Ball::unit(), &brisk()));
             holds::<T>("past a flat box", &s, -3.0, asked::<T>());
             // A ray within the flat set has a positive length in it, and the bracket must not deny it.
             let mut end = [0.0; N];
@@ -344,7 +344,7 @@ fn boundaries<T: Real, const N: usize>() {
         let t: [f64; N] = std::array::from_fn(|i| if i < touched { h[i] } else { 0.125 });
         let set =
             Rigid::new(BoxShape::new(vector::<T, N>(h)).unwrap(), SMatrix::identity(), vector::<T, N>(t)).unwrap();
-        let s = Seen::from(&solve(&set, &Ball::unit(), &Options::default()));
+        let s = Seen::from(&solve(&set, &Ball::unit(), &brisk()));
         holds::<T>("on the boundary of a box", &s, 0.0, Want::Roundoffs(2000.0, 2.0 * length(&h)));
         assert!(matches!(s.outcome, Outcome::Touching), "{N} {touched} {s:?}");
         // A Q that points inwards has a positive depth there: the bracket must contain it.
@@ -359,14 +359,14 @@ fn boundaries<T: Real, const N: usize>() {
     }
     let corner: Vec<[T; N]> =
         (0..=N).map(|k| std::array::from_fn(|i| if i + 1 == k { T::one() } else { T::zero() })).collect();
-    let s = Seen::from(&solve(&Points::new(&corner).unwrap(), &Ball::unit(), &Options::default()));
+    let s = Seen::from(&solve(&Points::new(&corner).unwrap(), &Ball::unit(), &brisk()));
     holds::<T>("at the corner of a simplex", &s, 0.0, Want::Roundoffs(2000.0, 1.0));
     assert_eq!(s.outcome, Outcome::Touching);
     let mut t = [0.0; N];
     t[0] = 1.0;
     let ellipsoid =
         Rigid::new(Ellipsoid::new(vector::<T, N>(h)).unwrap(), SMatrix::identity(), vector::<T, N>(t)).unwrap();
-    let s = Seen::from(&solve(&ellipsoid, &Ball::unit(), &Options::default()));
+    let s = Seen::from(&solve(&ellipsoid, &Ball::unit(), &brisk()));
     holds::<T>("on an ellipsoid", &s, 0.0, Want::Truth);
 }
 every_type_and_dimension!(the_origin_on_the_boundary_is_touching, boundaries);
@@ -381,7 +381,7 @@ fn distances<T: Real, const N: usize>() {
         let gap: [f64; N] = std::array::from_fn(|i| (t[i] - h[i]).max(0.0));
         let set =
             Rigid::new(BoxShape::new(vector::<T, N>(h)).unwrap(), SMatrix::identity(), vector::<T, N>(t)).unwrap();
-        let answer = solve(&set, &Ball::unit(), &Options::default());
+        let answer = solve(&set, &Ball::unit(), &brisk());
         holds::<T>("away from a box", &Seen::from(&answer), -length(&gap), asked::<T>());
         assert_eq!(answer.outcome, Outcome::Separated);
         let near = answer.witness.point();
@@ -394,7 +394,7 @@ fn distances<T: Real, const N: usize>() {
         for r in [1.0, length(&gap), 6.0] {
             let r = exact::<T>(r);
             let grown = Margin::new(set, T::of(r)).unwrap();
-            let s = Seen::from(&solve(&grown, &Ball::unit(), &Options::default()));
+            let s = Seen::from(&solve(&grown, &Ball::unit(), &brisk()));
             holds::<T>("away from a grown box", &s, r - length(&gap), Want::Truth);
         }
         let mut t = [0.0; N];
@@ -424,7 +424,7 @@ every_type_and_dimension!(outside_the_answer_is_minus_the_distance, distances);
 fn thresholds<T: Real, const N: usize>() {
     let h: [f64; N] = std::array::from_fn(|i| 1.0 + i as f64 / 8.0);
     let cuboid = BoxShape::new(vector::<T, N>(h)).unwrap();
-    let full = solve(&cuboid, &Ball::unit(), &Options::default());
+    let full = solve(&cuboid, &Ball::unit(), &brisk());
     for (threshold, outcome) in [
         (0.5, Outcome::Above),
         (0.99, Outcome::Above),
@@ -432,7 +432,7 @@ fn thresholds<T: Real, const N: usize>() {
         (2.0, Outcome::Below),
         (-1.0, Outcome::Above),
     ] {
-        let options = Options { threshold: Some(T::of(threshold)), ..Options::default() };
+        let options = Options { threshold: Some(T::of(threshold)), ..brisk() };
         let answer = solve(&cuboid, &Ball::unit(), &options);
         assert_eq!(answer.outcome, outcome, "{threshold} {:?}", Seen::from(&answer));
         holds::<T>("threshold", &Seen::from(&answer), 1.0, Want::Truth);
@@ -448,7 +448,7 @@ fn thresholds<T: Real, const N: usize>() {
         (-2.01, Outcome::Above),
         (-9.0, Outcome::Above),
     ] {
-        let options = Options { threshold: Some(T::of(threshold)), ..Options::default() };
+        let options = Options { threshold: Some(T::of(threshold)), ..brisk() };
         let answer = solve(&apart, &Ball::unit(), &options);
         assert_eq!(answer.outcome, outcome, "{threshold} {:?}", Seen::from(&answer));
         holds::<T>("threshold outside", &Seen::from(&answer), -2.0, Want::Truth);
@@ -511,7 +511,7 @@ fn two_soft_fingers() -> Grasp {
 /// Table I of the paper, rows (a1) to (a5): the values in closed form.
 fn table_one<T: Real>() {
     let grasp = two_soft_fingers();
-    let options = Options { relative: T::of(1e-3), ..Options::default() };
+    let options = Options { relative: T::of(1e-3), ..brisk() };
     // Large enough for the polytopal Q; the round ones end with Capacity and a true bracket.
     let mut memory = Memory::new::<T, 6>(512, 8192);
     let mut row = |what: &str, q: &dyn Gauge<T, 6>, d: f64, printed: f64, width: f64| {
@@ -549,7 +549,7 @@ fn table_one_of_the_paper_in_f32() {
 // Bodies in space.
 
 fn pair<T: Real>(a: &Body<'_, T>, b: &Body<'_, T>) -> Depth<T> {
-    let options = Options::default();
+    let options = brisk();
     let mut memory = Memory::new::<T, 3>(256, 512);
     let r = memory.solver::<T, 3>().depth(a, b, &options);
     assert_eq!(broken_promise(&Seen::from(&r), &options, 256, 512), None);
@@ -792,7 +792,7 @@ fn a_pair_is_decided_against_a_threshold() {
         (2.5, -0.75, Outcome::Above),
         (100.0, -1.0, Outcome::Below),
     ] {
-        let options = Options { threshold: Some(threshold), ..Options::default() };
+        let options = Options { threshold: Some(threshold), ..brisk() };
         let r = memory.solver::<f64, 3>().depth(&at(&cube, 0.0, 0.0, 0.0), &at(&cube, x, 0.125, 0.25), &options);
         assert_eq!(r.outcome, outcome, "{x} {threshold}: {r:?}");
         holds::<f64>("threshold", &Seen::from(&r), 2.0 - x, Want::Truth);

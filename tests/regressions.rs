@@ -5,7 +5,7 @@ mod common;
 
 use common::dd::{BLUR, Dd, v3};
 use common::exact::pair_value;
-use common::memory::{Memory, Seen, broken_promise};
+use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, Gauge, Segment};
@@ -22,7 +22,7 @@ fn body(kind: &str, numbers: &[f64], rotation: [f64; 9], translation: [f64; 3]) 
 fn pair<T: Real>(a: &BodyText, b: &BodyText, directions: &[[f64; 3]]) -> Seen {
     let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
     let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
-    let options = Options::default();
+    let options = brisk();
     let mut memory = Memory::new::<T, 3>(256, 512);
     let r = memory.solver::<T, 3>().depth(&common::body(a, &*sa), &common::body(b, &*sb), &options);
     let seen = Seen::from(&r);
@@ -105,7 +105,7 @@ fn a_flattened_set_with_a_small_ball_in_four_dimensions() {
 }
 
 fn general<const N: usize>(set: &dyn Support<f64, N>, gauge: &dyn Gauge<f64, N>) -> Seen {
-    let options = Options::default();
+    let options = brisk();
     let mut memory = Memory::new::<f64, N>(128, 1024);
     let seen = Seen::from(&memory.solver::<f64, N>().solve(set, gauge, &options));
     assert_eq!(broken_promise(&seen, &options, 128, 1024), None, "{seen:?}");
@@ -147,7 +147,7 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
     for limit in [0, 5, 33] {
         for (vertices, facets) in [(6, 6), (64, 128)] {
             let options =
-                Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..Options::default() };
+                Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..brisk() };
             let mut memory = Memory::new::<f32, 3>(vertices, facets);
             let r = memory.solver::<f32, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
             assert_eq!(broken_promise(&Seen::from(&r), &options, vertices, facets), None, "{r:?}");
@@ -230,11 +230,11 @@ fn extent_error_and_radius_that_are_no_numbers() {
         ] {
             let mut memory = Memory::new::<f64, 3>(64, 128);
             for seen in [
-                Seen::from(&memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &Options::default())),
+                Seen::from(&memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &brisk())),
                 Seen::from(&memory.solver::<f64, 3>().solve(
                     &set,
                     &BoxGauge::new(Vector::from([1.0; 3])).unwrap(),
-                    &Options::default(),
+                    &brisk(),
                 )),
             ] {
                 assert!(seen.lower <= seen.upper, "{} {} {}: {seen:?}", set.radius, set.extent, set.error);
@@ -264,7 +264,7 @@ fn a_limit_just_after_the_origin_was_found_outside() {
     let set = Rigid::new(BoxShape::new(Vector::from(h)).unwrap(), SMatrix::identity(), Vector::from(t)).unwrap();
     let mut best = f64::MIN;
     for limit in 1..20 {
-        let options = Options { max_iterations: limit, relative: 0.0, ..Options::default() };
+        let options = Options { max_iterations: limit, relative: 0.0, ..brisk() };
         let mut memory = Memory::new::<f64, 5>(64, 512);
         let seen = Seen::from(&memory.solver::<f64, 5>().solve(&set, &Ball::unit(), &options));
         assert!(seen.lower >= best - 1e-12, "{limit}: {best:e} before, {seen:?}");
@@ -276,7 +276,7 @@ fn a_limit_just_after_the_origin_was_found_outside() {
 #[test]
 fn an_ellipsoid_alone_is_its_least_semi_axis() {
     for semi in [[1.0, 1.0, 1.0], [1.0, 1.5, 2.0], [0.3, 1.0, 1.0], [1e-9, 1.0, 1.0], [0.0, 1.0, 1.0]] {
-        let options = Options::default();
+        let options = brisk();
         let mut memory = Memory::new::<f64, 3>(256, 512);
         let set = Ellipsoid::new(Vector::from(semi)).unwrap();
         let seen = Seen::from(&memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &options));

@@ -20,7 +20,7 @@ pub struct Options<T, const N: usize> {
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most points to add; 0: no limit. Default 100,000: a second or so in six dimensions. What a query needs grows with a power of
+    /// Most points to add; 0: no limit. Default 50,000: less than a second in six dimensions. What a query needs grows with a power of
     /// 1 / tolerance, (dimension - 1) / 2 for a smooth A.
     pub max_iterations: u32,
     /// The direction to look in first (any length, not zero): where the answer was last time.
@@ -33,7 +33,7 @@ impl<T: Real, const N: usize> Default for Options<T, N> {
             absolute: T::zero(),
             relative: T::RELATIVE_TOLERANCE,
             threshold: None,
-            max_iterations: 100_000,
+            max_iterations: 50_000,
             guess: None,
         }
     }

@@ -70,6 +70,11 @@ impl<T: Real> From<&Depth<T>> for Seen {
     }
 }
 
+/// The default, but for what a search by cones may take of the test's time.
+pub fn brisk<T: Real, const N: usize>() -> Options<T, N> {
+    Options { max_iterations: 500, ..Options::default() }
+}
+
 /// What every answer promises whatever it is about; the first broken promise as text. `vertices` and `facets` are the
 /// capacities.
 pub fn broken_promise<T: Real, const N: usize>(
