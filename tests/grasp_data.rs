@@ -1,6 +1,7 @@
 //! The shared grasps: support functions at the reference directions, active sets, dimensions.
 //!
-//! The data lie beside the project (`../shared/data/grasps`); when they are missing, that is an error with `CI=true` and a printed line otherwise.
+//! The data lie beside the project (`../shared/data/grasps`); when they are missing, that is an error with `CI=true`
+//! and a printed line otherwise.
 #![cfg(feature = "grasp")]
 
 mod common;
@@ -57,7 +58,8 @@ fn local_direction(r: &Value) -> Vec<f64> {
     }
 }
 
-/// The direction of a reference as one of R^6: its coordinates refer to the columns of R, or to the rows of S, if there are any.
+/// The direction of a reference as one of R^6: its coordinates refer to the columns of R, or to the rows of S, if there
+/// are any.
 fn direction(r: &Value) -> Vector<f64, 6> {
     let u = local_direction(r);
     let sum = |axis: &dyn Fn(usize) -> Vector<f64, 6>| (0..u.len()).map(|k| axis(k) * u[k]).sum();
@@ -151,20 +153,15 @@ fn values<T: Real>(test: &str, tolerance: f64) {
             let u = vector::<T, 6>(direction(r).into());
             let (found, d) = (set.value(&u).to_f64() / gauge(&r["Q"], &local_direction(r)), r["d"].as_f64().unwrap());
             let kind = r["Q"]["type"].as_str().unwrap();
-            let round = kind == "ball" || kind == "ellipsoid";
-            // The directions of polytopal Q come from an interior point method.
-            let allowed = if round { tolerance } else { tolerance.max(1e-6) };
-            assert!((found - d).abs() <= allowed * d, "{} {} {:?} {kind}: {found} {d}", grasp.id, r["set"], norm(r));
-            if round && d > 0.0 {
+            assert!((found - d).abs() <= tolerance * d, "{} {} {:?} {kind}: {found} {d}", grasp.id, r["set"], norm(r));
+            if d > 0.0 {
                 widest = widest.max((found - d).abs() / d);
             }
-            *if round { &mut smooth } else { &mut others } += 1;
+            *if kind == "ball" || kind == "ellipsoid" { &mut smooth } else { &mut others } += 1;
             active += usize::from(is_active);
         }
     }
-    println!(
-        "{smooth} ball and ellipsoid, {others} other references, {active} of them active; ball and ellipsoid to {widest:.1e}"
-    );
+    println!("{smooth} references with ball or ellipsoid, {others} others, {active} of them active: to {widest:.1e}");
     assert!(smooth >= 30 && others >= 15 && active >= 12);
 }
 

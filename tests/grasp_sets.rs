@@ -1,4 +1,5 @@
-//! Wrench sets of contacts: values by brute force, the promise of a support function in `f32` against `f64`, mirrors, bad input.
+//! Wrench sets of contacts: values by brute force, the promise of a support function in `f32` against `f64`, mirrors,
+//! bad input.
 #![cfg(feature = "grasp")]
 
 mod common;
@@ -62,8 +63,8 @@ fn values_are_those_of_the_best_force() {
     }
 }
 
-/// In `f32`, with everything of the exact contacts in `f64`: a point is almost in the set and almost as far as any, and the extent
-/// covers it, for directions and torque scales of all sizes.
+/// In `f32`, with everything of the exact contacts in `f64`: a point is almost in the set and almost as far as any, and
+/// the extent covers it, for directions and torque scales of all sizes.
 #[test]
 fn sets_keep_their_promise() {
     let mut dice = Dice::new(2);
@@ -130,7 +131,8 @@ fn primitives_are_sets_of_their_own() {
     assert!((disc.support(&tiny).unwrap() - axis(0)).norm() < 1.0 + 1e-15);
 }
 
-/// Row (a1) of the paper: mirrored in y, in z, and half a turn about x, but not in x: the fingers are at different distances.
+/// Row (a1) of the paper: mirrored in y, in z, and half a turn about x, but not in x: the fingers are at different
+/// distances.
 #[test]
 fn mirrors_of_two_fingers() {
     let soft = Friction::Soft { mu: 0.2, mus: 0.2 };
@@ -165,7 +167,8 @@ fn mirrors_of_two_fingers() {
     assert!(!WrenchSet::new(&lopsided, Norm::LInf).mirrored(&signs));
 }
 
-/// A random grasp and its mirror image together are symmetric, with derived tangents, exactly; and what `mirrored` says is true.
+/// A random grasp and its mirror image together are symmetric, with derived tangents, exactly; and what `mirrored` says
+/// is true.
 #[test]
 fn mirrored_sets_have_mirrored_values() {
     let mut dice = Dice::new(3);

@@ -105,8 +105,8 @@ impl<T: Real> Friction<T> {
 
 /// A contact between finger or palm and object, in a frame of the caller's choice.
 ///
-/// The numbers count as they are given: a normal or tangent may be off unit length, and off the right angle, by rounding, up to 1e-6
-/// (`f64`) or 1e-4 (`f32`), and is not corrected.
+/// The numbers count as they are given: a normal or tangent may be off unit length, and off the right angle, by
+/// rounding, up to 1e-6 (`f64`) or 1e-4 (`f32`), and is not corrected.
 ///
 /// ```
 /// use qdist::{Vector, grasp::{Contact, ContactError, Friction}};

@@ -23,8 +23,8 @@ pub struct WrenchFrame<T> {
 }
 
 impl<T: Real> WrenchFrame<T> {
-    /// Moments about `reference`, usually the centre of mass, divided by the length `torque_scale` > 0, usually the object's
-    /// radius about it; both in the unit of the contacts' positions. 1 leaves moments as they are.
+    /// Moments about `reference`, usually the centre of mass, divided by the length `torque_scale` > 0, usually the
+    /// object's radius about it; both in the unit of the contacts' positions. 1 leaves moments as they are.
     ///
     /// # Errors
     /// [`ContactError::Frame`].
@@ -46,8 +46,8 @@ impl<T: Real> WrenchFrame<T> {
         self.torque_scale
     }
 
-    /// The contact map G (paper, eq. 2): the wrench of a contact force (f1, f2, f3, f4) along n, o, t and, divided by the torque
-    /// scale as all moments, about n.
+    /// The contact map G (paper, eq. 2): the wrench of a contact force (f1, f2, f3, f4) along n, o, t and, divided by
+    /// the torque scale as all moments, about n.
     ///
     /// Rounding, in units of roundoff: the arm r = (p - reference)/L has two; a cross product with it 6 |r|
     /// in all, since each coordinate is the difference of two products with one rounding each.

@@ -9,19 +9,20 @@ use super::primitive::Primitive;
 use super::svd::{Svd, dot};
 use crate::scalar::{Real, Vector};
 
-/// The active forces of a contact, U^a = U n range(J): { center + disc x : |x| <= 1 } in R^4, for unit normal force (paper, eq. 10-15).
+/// The active forces of a contact, U^a = U ∩ range(J): { center + disc x : |x| <= 1 } in R^4, for unit normal force
+/// (paper, eq. 10-15).
 ///
-/// U is the set of f = S (1, x) with S = diag(1, mu, mu, mus/L) and |x| <= 1. With B an orthonormal basis of the complement of range(J), f is
-/// active if B^T f = 0, linear equations for x: K x = -k, where K and k are the parts of B^T S. Let x0 be
-/// their solution of least norm. Then, whatever the rank r of J,
+/// U is the set of f = S (1, x) with S = diag(1, mu, mu, mus/L) and |x| <= 1. With B an orthonormal basis of the
+/// complement of range(J), f is active if B^T f = 0, linear equations for x: K x = -k, where K and k are the parts of
+/// B^T S. Let x0 be their solution of least norm. Then, whatever the rank r of J,
 ///
 /// * no solution: the joints cannot press along the normal within the friction model; U^a is empty;
 /// * Delta = 1 - |x0|^2 < 0: they press, but outside of the friction cone; U^a is empty;
 /// * Delta = 0: U^a is the point S (1, x0);
 /// * Delta > 0: the disc x0 + sqrt(Delta) N y, |y| <= 1, with N an orthonormal basis of the null space of K.
 ///
-/// |x|^2 is f^T D f of eq. 11b, so that Delta, f_0 = S (1, x0) and P = S N up to a rotation are those of eq. 14-15; but mu and mus may
-/// be zero, and ranks 0 (empty), 1 and 4 (all of U, exactly the passive set) are no special cases.
+/// Since |x|^2 is f^T D f of eq. 11b, Delta, f_0 = S (1, x0) and P = S N, up to a rotation, are those of eq. 14-15; but
+/// mu and mus may be zero, and ranks 0 (empty), 1 and 4 (all of U, exactly the passive set) are no special cases.
 ///
 /// Moments are divided by the torque scale L here, too: range(J) is that of J with its spin row times L.
 ///
@@ -47,9 +48,11 @@ pub struct ActiveForces<T> {
 impl<T: Real> ActiveForces<T> {
     /// The active forces of `contact`, moved by `jacobian`.
     ///
-    /// `tolerance`, usually [`default_tolerance`](super::default_tolerance), decides what counts as zero: singular values of J relative to the
-    /// largest; how far a force with unit normal component may be from range(J); and Delta. A force that is outside of the
-    /// friction cone by no more than that is drawn back into it. A few microseconds.
+    /// `tolerance`, usually [`default_tolerance`](super::default_tolerance), decides what counts as zero: singular
+    /// values of J relative to the largest; how far a force with unit normal component may be from range(J); and Delta.
+    /// A force that is outside of the friction cone by no more than that is drawn back into it.
+    ///
+    /// Cost: two singular value decompositions, of 4 x 8 and 4 x 3 numbers; about a microsecond on a desktop machine.
     ///
     /// # Errors
     /// [`ContactError::Tolerance`].
@@ -107,13 +110,14 @@ impl<T: Real> ActiveForces<T> {
         self.rank
     }
 
-    /// Delta of eq. 14: 1 less the square of how much of the friction the force in the middle needs, -infinity < Delta <= 1. `None` when no force with
-    /// a normal component is both active and possible in the friction model.
+    /// Delta of eq. 14: 1 less the square of how much of the friction the force in the middle needs, at most 1.
+    /// `None` when no force with a normal component is both active and possible in the friction model.
     pub fn delta(&self) -> Option<T> {
         self.delta
     }
 
-    /// Center (1, f2, f3, f4) and disc for unit normal force, without the contact's force cap; moments divided by the torque scale. `None`: empty.
+    /// Center (1, f2, f3, f4) and disc for unit normal force, without the contact's force cap; moments divided by the
+    /// torque scale. `None`: empty.
     pub fn set(&self) -> Option<(&Vector<T, 4>, &SMatrix<T, 4, 3>)> {
         self.set.as_ref().map(|(center, disc)| (center, disc))
     }
@@ -136,8 +140,8 @@ impl<T: Real> ActiveForces<T> {
     }
 }
 
-/// A contact of a hand: of a finger link with a Jacobian, or of the palm without, which is passive: it resists with whatever force
-/// friction allows. A finger with several contacts has a Jacobian for each.
+/// A contact of a hand: of a finger link with a Jacobian, or of the palm without, which is passive: it resists with
+/// whatever force friction allows. A finger with several contacts has a Jacobian for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandContact<T> {
     /// Where, and with how much friction.
@@ -167,7 +171,8 @@ pub struct HandContact<T> {
 /// ```
 ///
 /// # Errors
-/// [`ContactError::Tolerance`], [`ContactError::Wrench`]; [`ContactError::Room`] at the first contact for which `out` has no room.
+/// [`ContactError::Tolerance`], [`ContactError::Wrench`]; [`ContactError::Room`] at the first contact for which `out`
+/// has no room.
 pub fn active_wrenches<'o, T: Real>(
     hand: &[HandContact<T>],
     frame: &WrenchFrame<T>,

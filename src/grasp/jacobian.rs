@@ -10,9 +10,9 @@ pub const MAX_JOINTS: usize = 8;
 
 /// The Jacobian of a contact, 4 x q with q <= 8: joint torques are `J^T f` (paper, eq. 9).
 ///
-/// Column j is what one unit of joint velocity j does to the finger at the contact point: its velocity along n, o, t, and its
-/// angular velocity about n. Units: those of position per joint unit in the first three rows, 1 per joint unit (radians) in the last. Locked
-/// joints have no column.
+/// Column j is what one unit of joint velocity j does to the finger at the contact point: its velocity along n, o, t,
+/// and its angular velocity about n. Units: those of position per joint unit in the first three rows, 1 per joint unit
+/// (radians) in the last. Locked joints have no column.
 ///
 /// ```
 /// use qdist::grasp::{ContactError, Jacobian, default_tolerance};
@@ -49,8 +49,8 @@ impl<T: Real> Jacobian<T> {
         Ok(Self { rows: rows.map(padded), joints: first.len() })
     }
 
-    /// The Jacobian of actuators that drive the joints together: `J C`, where row j of the coupling matrix C says how fast joint j turns per
-    /// unit velocity of each actuator. One row per joint, all of one length from 0 to 8.
+    /// The Jacobian of actuators that drive the joints together: `J C`, where row j of the coupling matrix C says how
+    /// fast joint j turns per unit velocity of each actuator. One row per joint, all of one length from 0 to 8.
     ///
     /// # Errors
     /// [`ContactError::Coupling`]; [`ContactError::Jacobian`] when an entry of the product is too large.
@@ -82,12 +82,12 @@ impl<T: Real> Jacobian<T> {
         self.rows.get(row)?.get(..self.joints)?.get(column).copied()
     }
 
-    /// The rank r, 0 to 4: the number of singular values above `tolerance` times the largest one, of the Jacobian with its spin row times
-    /// `torque_scale`, the unit in which moments count ([`WrenchFrame`](super::WrenchFrame)).
+    /// The rank r, 0 to 4: the number of singular values above `tolerance` times the largest one, of the Jacobian with
+    /// its spin row times `torque_scale`, the unit in which moments count ([`WrenchFrame`](super::WrenchFrame)).
     ///
     /// # Errors
-    /// [`ContactError::Tolerance`]: below 16 roundoffs or above 1/2. [`ContactError::Frame`]: a torque scale that is not finite or
-    /// too large.
+    /// [`ContactError::Tolerance`]: below 16 roundoffs or above 1/2. [`ContactError::Frame`]: a torque scale that is
+    /// not finite or too large.
     pub fn rank(&self, torque_scale: T, tolerance: T) -> Result<usize, ContactError> {
         if !usable([torque_scale].iter()) {
             return Err(ContactError::Frame);
@@ -95,8 +95,8 @@ impl<T: Real> Jacobian<T> {
         Ok(self.range(torque_scale, tolerance)?.0)
     }
 
-    /// The rank r and an orthonormal basis of R^4 whose first r vectors span the range of J, which is that of its pseudo-inverse
-    /// J^{+T}: the columns of A in eq. 10.
+    /// The rank r and an orthonormal basis of R^4 whose first r vectors span the range of J, which is that of its
+    /// pseudo-inverse J^{+T}: the columns of A in eq. 10.
     pub(super) fn range(&self, torque_scale: T, tolerance: T) -> Result<(usize, [[T; 4]; 4]), ContactError> {
         check_tolerance(tolerance)?;
         let [n, o, t, spin] = self.rows;

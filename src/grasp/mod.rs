@@ -1,10 +1,10 @@
 //! Grasps: contacts, friction, wrench sets, and what the joints of a hand can do about them.
 //!
-//! A hand holds an object at m contacts. The wrenches that it can resist with contact forces of unit size form a convex set
-//! W around the origin of R^6; how far the origin is inside W, measured by a set Q of wrenches of interest, is the
-//! *grasp force efficiency* d_Q(W) (paper, Section II, eq. 8). The *active* efficiency d_Q(W^a) counts only the forces that
-//! joint torques generate (Section III). Here W and W^a become a [`Support`](crate::support::Support), with support function and mapping in
-//! closed form; the solver does the rest.
+//! A hand holds an object at m contacts. The wrenches that it can resist with contact forces of unit size form a convex
+//! set W around the origin of R^6; how far the origin is inside W, measured by a set Q of wrenches of interest, is the
+//! *grasp force efficiency* d_Q(W) (paper, Section II, eq. 8). The *active* efficiency d_Q(W^a) counts only the forces
+//! that joint torques generate (Section III). Here W and W^a become a [`Support`](crate::support::Support), with
+//! support function and mapping in closed form; the solver does the rest.
 //!
 //! ```
 //! use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet};
@@ -33,9 +33,9 @@
 //! * A contact force f = (f1, f2, f3, f4) has components along n, o, t and a spin moment about n. The wrench that it
 //!   exerts on the object is G f (eq. 2); the external wrench that it resists is -G f.
 //! * A wrench is (force, moment / L): moments about the reference point, divided by a torque scale L > 0, a
-//!   characteristic length ([`WrenchFrame`]). Then all six coordinates are forces, and lengths in R^6 have a meaning. Every Euclidean
-//!   statement depends on L: d for a ball, and also *which* forces count as active, since the pseudo-inverse
-//!   in eq. 9 weighs moments against forces.
+//!   characteristic length ([`WrenchFrame`]). Then all six coordinates are forces, and lengths in R^6 have a meaning.
+//!   Every Euclidean statement depends on L: d for a ball, and also *which* forces count as active, since the
+//!   pseudo-inverse in eq. 9 weighs moments against forces.
 //! * Friction (eq. 1): sqrt((f2^2 + f3^2)/mu^2 + f4^2/mus^2) <= f1. A hard finger has f4 = 0, a frictionless contact
 //!   f2 = f3 = f4 = 0. mu has no unit, mus is a length ([`Friction`]).
 //! * Size of a set of contact forces (eq. 4), with c_i the contact's force cap, 1 unless stated: L-infinity
@@ -44,24 +44,25 @@
 //! # The sets
 //!
 //! The forces of contact i with f1 = c_i form a disc of at most three dimensions, U_i (eq. 7). Its wrenches
-//! `W_i = G_i U_i = { center + disc x : |x| <= 1 }` are a [`Primitive`], with h_i(u) = center.u + |disc^T u|. Then ([`WrenchSet`])
+//! `W_i = G_i U_i = { center + disc x : |x| <= 1 }` are a [`Primitive`], with h_i(u) = center.u + |disc^T u|. Then
+//! ([`WrenchSet`])
 //!
 //! ```text
-//! W_L1   = hull({0} u W_1 u ... u W_m)                   h = max(0, h_1, ..., h_m)
-//! W_Linf = hull({0} u W_1) + ... + hull({0} u W_m)       h = max(0, h_1) + ... + max(0, h_m)
+//! W_L1   = hull({0} ∪ W_1 ∪ ... ∪ W_m)                   h = max(0, h_1, ..., h_m)
+//! W_Linf = hull({0} ∪ W_1) + ... + hull({0} ∪ W_m)       h = max(0, h_1) + ... + max(0, h_m)
 //! ```
 //!
-//! **{0} belongs to every primitive.** Read literally, eq. 5 adds sets in which every contact presses with full force. That misses the
-//! forces below the limit, and contradicts the paper's own row (a5) of Table I, 1.0000, which two fingers that press
-//! with equal forces could not give. The formulas above are those of eq. 3 with ||f|| <= 1.
+//! **{0} belongs to every primitive.** Read literally, eq. 5 adds sets in which every contact presses with full force.
+//! That misses the forces below the limit, and contradicts the paper's own row (a5) of Table I, 1.0000, which two
+//! fingers that press with equal forces could not give. The formulas above are those of eq. 3 with ||f|| <= 1.
 //!
-//! The active set U_i^a = U_i n range(J_i) (Section III, eq. 9-15) is again such a disc, of fewer dimensions, a point,
-//! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat: [`Subspace`] finds the smallest
-//! subspace R that contains it.
+//! The active set U_i^a = U_i ∩ range(J_i) (Section III, eq. 9-15) is again such a disc, of fewer dimensions, a point,
+//! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat:
+//! [`Subspace`] finds the smallest subspace R that contains it.
 //!
 //! # What is not modelled
 //!
-//! * Rigid links, fingers and object; no compliance, no dynamics.
+//! * Compliance and dynamics: links, fingertips and object are rigid and at rest.
 //! * Two contacts of one finger are judged one by one, each against its own Jacobian, as if the other did
 //!   not need the joints. The forces that joint torques generate *together* are a subset; W^a is then an upper estimate.
 //! * Torque limits of the joints: the cap bounds the normal force of a contact, not the torque that makes it.
@@ -73,8 +74,9 @@
 //!
 //! # Sources
 //!
-//! The paper's Sections II and III. R. M. Murray, Z. X. Li, S. S. Sastry, *A Mathematical Introduction to Robotic Manipulation*,
-//! 1994 (contact maps, friction models). J. Demmel and K. Veselic, *Jacobi's method is more accurate than QR*, 1992 (the SVD).
+//! The paper's Sections II and III. R. M. Murray, Z. X. Li, S. S. Sastry, *A Mathematical Introduction to Robotic
+//! Manipulation*, 1994 (contact maps, friction models). J. Demmel and K. Veselic, *Jacobi's method is more accurate
+//! than QR*, 1992 (the SVD).
 
 mod contact;
 mod frame;

@@ -9,14 +9,15 @@ use super::usable;
 use crate::scalar::{Real, Vector, norm, unit};
 use crate::support::{Failure, Support};
 
-/// A primitive wrench set W_i = { center + disc x : |x| <= 1 } in R^6 (paper, eq. 6): an ellipsoid of at most three dimensions,
-/// a point, or empty.
+/// A primitive wrench set W_i = { center + disc x : |x| <= 1 } in R^6 (paper, eq. 6): an ellipsoid of at most three
+/// dimensions, a point, or empty.
 ///
 /// Support function `h(u) = center.u + |disc^T u|`, mapping `center + disc w/|w|` with w = disc^T u.
 ///
-/// `error`, with E = |center| + |disc| (Frobenius): 6 roundoffs for w and thus twice 6 for the choice of the point, 5 for the unit
-/// vector, 4 for center + disc x make `24 u E`. A primitive made of a contact counts the roundings of the contact map, too,
-/// 14 for the map and its product with the force, `16 u |G| |f|`: it keeps the promise for the contact's exact numbers.
+/// `error`, with E = |center| + |disc| (Frobenius): 6 roundoffs for w and thus twice 6 for the choice of the point, 5
+/// for the unit vector, 4 for center + disc x make `24 u E`. A primitive made of a contact counts the roundings of the
+/// contact map, too, 14 for the map and its product with the force, `16 u |G| |f|`: it keeps the promise for the
+/// contact's exact numbers.
 ///
 /// ```
 /// use qdist::{Vector, grasp::{Contact, ContactError, Friction, Primitive, WrenchFrame}, support::Support};
@@ -54,8 +55,8 @@ impl<T: Real> Primitive<T> {
         Ok(Self { center, disc, empty: false, rounding: T::zero() })
     }
 
-    /// All wrenches of the contact with its full normal force, whoever generates them: G(U) with the U of eq. 7 times the force
-    /// cap. The center is the wrench of the normal force, the disc that of mu o, mu t and mus about n.
+    /// All wrenches of the contact with its full normal force, whoever generates them: G(U) with the U of eq. 7 times
+    /// the force cap. The center is the wrench of the normal force, the disc that of mu o, mu t and mus about n.
     ///
     /// # Errors
     /// [`ContactError::Wrench`].
@@ -94,12 +95,14 @@ impl<T: Real> Primitive<T> {
         self.empty
     }
 
-    /// h(u) for u not far from unit length, to within [`error`](Support::error) |u|; `-HUGE` for the empty set. About 50 operations.
+    /// h(u) for u not far from unit length, to within [`error`](Support::error) |u|; `-HUGE` for the empty set. About
+    /// 50 operations.
     pub fn value(&self, u: &Vector<T, 6>) -> T {
         if self.empty { -T::HUGE } else { self.farthest(u).value }
     }
 
-    /// The value and what the point needs. `u` near unit length ([`near_unit`]), or rounding may go below the format's range.
+    /// The value and what the point needs. `u` near unit length ([`near_unit`]), or rounding may go below the format's
+    /// range.
     #[inline]
     pub(super) fn farthest(&self, u: &Vector<T, 6>) -> Farthest<T> {
         let along: Vector<T, 3> = Vector::from(self.disc.data.0.each_ref().map(|column| dot(column, &u.data.0[0])));

@@ -8,11 +8,11 @@ use super::primitive::Primitive;
 use super::svd::Triangle;
 use crate::scalar::{Real, Vector, norm};
 
-/// The minimal subspace R of R^6 that contains a wrench set (paper, end of Section III), by an orthonormal basis. {0} is in the set, so R is
-/// the linear span of all centers and discs.
+/// The minimal subspace R of R^6 that contains a wrench set (paper, end of Section III), by an orthonormal basis. {0}
+/// is in the set, so R is the linear span of all centers and discs.
 ///
-/// The basis is orthonormal to 64 roundoffs. Where R is spanned by coordinate axes, up to the same, the basis is these axes,
-/// exactly.
+/// The basis is orthonormal to 64 roundoffs. Where R is spanned by coordinate axes, up to the same, the basis is these
+/// axes, exactly.
 ///
 /// ```
 /// use nalgebra::SMatrix;
@@ -33,10 +33,11 @@ pub struct Subspace<T> {
 impl<T: Real> Subspace<T> {
     /// The span of `primitives`.
     ///
-    /// Each center and each column of a disc counts with length 1, so that the answer is about directions: a contact with little friction
-    /// or a small force cap counts as much as any. (Columns that are no more than rounding, 64 roundoffs of their primitive, do not
-    /// count.) The dimension is the number of singular values above `tolerance` times the largest one. Cost: 4 m Givens rotations of 6
-    /// numbers, 6 times, and one 6 x 6 singular value decomposition.
+    /// Each center and each column of a disc counts with length 1, so that the answer is about directions: a contact
+    /// with little friction or a small force cap counts as much as any. (Columns that are no more than rounding, 64
+    /// roundoffs of their primitive, do not count.) The dimension is the number of singular values above `tolerance`
+    /// times the largest one. Cost: 4 m Givens rotations of 6 numbers, 6 times, and one 6 x 6 singular value
+    /// decomposition.
     ///
     /// # Errors
     /// [`ContactError::Tolerance`].

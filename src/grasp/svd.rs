@@ -1,8 +1,8 @@
 //! Singular values of small matrices, by Jacobi's one-sided method.
 //!
-//! nalgebra's SVD is not used: it panics on failure and may loop forever. This one ends after a fixed number of sweeps, keeps zero columns
-//! and columns that are orthogonal already as they are, bit by bit, and finds small singular values to high
-//! relative accuracy.
+//! nalgebra's SVD is not used: it panics on failure and may loop forever. This one ends after a fixed number of sweeps,
+//! keeps zero columns and columns that are orthogonal already as they are, bit by bit, and finds small singular values
+//! to high relative accuracy.
 
 use crate::scalar::Real;
 

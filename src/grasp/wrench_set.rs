@@ -20,15 +20,16 @@ pub enum Norm {
 /// LInf: sum of the hulls of {0} and W_i    h = max(0, h_1) + ... + max(0, h_m)
 /// ```
 ///
-/// One pass over the m primitives per support call, about 50 operations each, one square root included. Empty primitives add nothing.
-/// The witness is the point itself.
+/// One pass over the m primitives per support call, about 50 operations each, one square root included. Empty
+/// primitives add nothing. The witness is the point itself.
 ///
-/// `error`, with e_i the error of primitive i, at least 24 u times its size: a computed value h_i is within e_i of the true one. L1 picks a
-/// primitive by two such values, `3 max e_i` with the point's own. LInf decides by signs, which may cost e_i where it is wrong, and adds m
-/// points, one roundoff of the sum for each: `(2 + m/24) sum e_i`.
+/// `error`, with e_i the error of primitive i, at least 24 u times its size: a computed value h_i is within e_i of the
+/// true one. L1 picks a primitive by two such values, `3 max e_i` with the point's own. LInf decides by signs, which
+/// may cost e_i where it is wrong, and adds m points, one roundoff of the sum for each: `(2 + m/24) sum e_i`.
 ///
 /// ```
-/// use qdist::{Vector, grasp::{Contact, ContactError, Friction, Norm, Primitive, WrenchFrame, WrenchSet}, support::Support};
+/// use qdist::Vector;
+/// use qdist::grasp::{Contact, ContactError, Friction, Norm, Primitive, WrenchFrame, WrenchSet};
 /// let frame = WrenchFrame::new(Vector::zeros(), 1.0)?;
 /// let mut primitives = [Primitive::empty(); 2];
 /// for (primitive, x) in primitives.iter_mut().zip([-1.0, 1.0]) {
@@ -50,8 +51,8 @@ pub struct WrenchSet<'a, T> {
 }
 
 impl<'a, T: Real> WrenchSet<'a, T> {
-    /// The wrench set of `primitives`, which stay the caller's. Reads all of them, and for LInf calls the support function 12 times to
-    /// bound the extent.
+    /// The wrench set of `primitives`, which stay the caller's. Reads all of them, and for LInf calls the support
+    /// function 12 times to bound the extent.
     pub fn new(primitives: &'a [Primitive<T>], norm: Norm) -> Self {
         let zero = T::zero();
         let largest = |f: fn(&Primitive<T>) -> T| primitives.iter().fold(zero, |m, p| m.at_least(f(p)));
@@ -93,9 +94,9 @@ impl<'a, T: Real> WrenchSet<'a, T> {
 
     /// Is the set provably the same after its coordinates are multiplied by `signs`, each 1 or -1?
     ///
-    /// True when every primitive, mirrored, is in the list: the same center and, up to order and sign, the same columns of the disc, by
-    /// exact comparison of floating-point numbers; for LInf as often as the primitive itself. False means that it is not known.
-    /// m^2 comparisons of up to 24 numbers.
+    /// True when every primitive, mirrored, is in the list: the same center and, up to order and sign, the same columns
+    /// of the disc, by exact comparison of floating-point numbers; for LInf as often as the primitive itself. False
+    /// means that it is not known. m^2 comparisons of up to 24 numbers.
     pub fn mirrored(&self, signs: &Vector<T, 6>) -> bool {
         if !signs.iter().all(|s| s.abs() == T::one()) {
             return false;
