@@ -9,9 +9,10 @@ use common::dice::Dice;
 use grasp_common::{contact_map, direction, radii, random_contact, value, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, ContactError, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+use qdist::qset::{Ball, BoxGauge, CrossPolytope, Gauge, Segment};
 use qdist::scalar::norm as norm_of;
 use qdist::support::Support;
-use qdist::{Real, Vector};
+use qdist::{Options, Real, Vector, Workspace};
 
 fn frame<T: Real>(dice: &mut Dice, reach: f64) -> WrenchFrame<T> {
     let scale = if dice.chance(0.5) { reach } else { reach * dice.decade(-2.0, 2.0) };
@@ -165,6 +166,29 @@ fn mirrors_of_two_fingers() {
     let signs = Vector::from([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]);
     assert!(WrenchSet::new(&lopsided, Norm::L1).mirrored(&signs));
     assert!(!WrenchSet::new(&lopsided, Norm::LInf).mirrored(&signs));
+}
+
+/// Table I of the paper, rows (a1), (a3), (a4) and (a5): the solver's brackets around the closed forms.
+#[test]
+fn table_one_by_the_solver() {
+    let soft = Friction::Soft { mu: 0.2, mus: 0.2 };
+    let at = |x: f64| Contact::new(vector([x, 0.0, 0.0]), vector([-x.signum(), 0.0, 0.0]), soft).unwrap();
+    let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
+    let primitives = primitives(&[at(-0.75), at(1.3)], &frame);
+    let set = WrenchSet::new(&primitives, Norm::LInf);
+    let mut memory = Box::new(Workspace::<f64, 6, 512, 8192>::new());
+    let options = Options { relative: 1e-3, ..Options::default() };
+    let mut row = |q: &dyn Gauge<f64, 6>, d: f64| {
+        let answer = memory.solver().solve(&set, q, &options);
+        let (lower, upper) = (answer.lower, answer.upper);
+        assert!(lower <= d * (1.0 + 1e-15) && d * (1.0 - 1e-15) <= upper, "{d}: [{lower}, {upper}]");
+        println!("{d:.6}: [{lower:.6}, {upper:.6}]");
+    };
+    let ones = Vector::repeat(1.0);
+    row(&Ball::unit(), 0.41 / (0.1681f64 + 1.69 + 1.0).sqrt());
+    row(&CrossPolytope::new(ones).unwrap(), 0.41 / 1.3);
+    row(&BoxGauge::new(ones).unwrap(), 0.41 / (0.41 + 2.3 * 2f64.sqrt()));
+    row(&Segment::new(Vector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])).unwrap(), 1.0);
 }
 
 /// A random grasp and its mirror image together are symmetric, with derived tangents, exactly; and what `mirrored` says
