@@ -91,6 +91,8 @@ pub mod bounds;
 pub mod capi;
 pub mod depth;
 mod distance;
+#[cfg(feature = "grasp")]
+pub mod grasp;
 mod meridian;
 #[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
 #[path = "capi/panic.rs"]

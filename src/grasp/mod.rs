@@ -1,0 +1,127 @@
+//! Grasps: contacts, friction, wrench sets, and what the joints of a hand can do about them.
+//!
+//! A hand holds an object at m contacts. The wrenches that it can resist with contact forces of unit size form a convex
+//! set W around the origin of R^6; how far the origin is inside W, measured by a set Q of wrenches of interest, is the
+//! *grasp force efficiency* d_Q(W) (paper, Section II, eq. 8). The *active* efficiency d_Q(W^a) counts only the forces
+//! that joint torques generate (Section III). Here W and W^a become a [`Support`](crate::support::Support), with
+//! support function and mapping in closed form; the solver does the rest.
+//!
+//! ```
+//! use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet};
+//! use qdist::{Options, Vector, Workspace, qset::Segment};
+//!
+//! // Two soft fingertips pinch a block along x: positions and torque scale in metres, forces in newtons.
+//! let rubber = Friction::Soft { mu: 0.5, mus: 0.01 };
+//! let frame = WrenchFrame::new(Vector::zeros(), 0.05)?; // about the centre of mass; 1 N counts as much as 0.05 N m
+//! let left = Contact::new(Vector::from([-0.03, 0.0, 0.0]), Vector::from([1.0, 0.0, 0.0]), rubber)?;
+//! let right = Contact::new(Vector::from([0.03, 0.0, 0.0]), Vector::from([-1.0, 0.0, 0.0]), rubber)?;
+//! let primitives = [Primitive::passive(&left, &frame)?, Primitive::passive(&right, &frame)?];
+//! let w = WrenchSet::new(&primitives, Norm::LInf);
+//!
+//! // How much weight can it hold when neither finger presses with more than 1 N? Friction bears 2 * 0.5 N.
+//! let weight = Segment::new(Vector::from([0.0, 0.0, -1.0, 0.0, 0.0, 0.0])).unwrap();
+//! let mut memory = Workspace::<f64, 6, 64, 1024>::new();
+//! let answer = memory.solver().solve(&w, &weight, &Options { relative: 1e-3, ..Options::default() });
+//! assert!(answer.lower <= 1.0 && 1.0 <= answer.upper + 1e-12);
+//! # Ok::<(), qdist::grasp::ContactError>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! * A contact has a position p, the unit normal n that points **into the object**, and unit tangents o, t with n = o x t,
+//!   all in one frame of the caller's choice ([`Contact`]).
+//! * A contact force f = (f1, f2, f3, f4) has components along n, o, t and a spin moment about n. The wrench that it
+//!   exerts on the object is G f (eq. 2); the external wrench that it resists is -G f.
+//! * A wrench is (force, moment / L): moments about the reference point, divided by a torque scale L > 0, a
+//!   characteristic length ([`WrenchFrame`]). Then all six coordinates are forces, and lengths in R^6 have a meaning.
+//!   Every Euclidean statement depends on L: d for a ball, and also *which* forces count as active, since the
+//!   pseudo-inverse in eq. 9 weighs moments against forces.
+//! * Friction (eq. 1): sqrt((f2^2 + f3^2)/mu^2 + f4^2/mus^2) <= f1. A hard finger has f4 = 0, a frictionless contact
+//!   f2 = f3 = f4 = 0. mu has no unit, mus is a length ([`Friction`]).
+//! * Size of a set of contact forces (eq. 4), with c_i the contact's force cap, 1 unless stated: L-infinity
+//!   `max f_i1 / c_i`, every contact has its own limit; L1 `sum f_i1 / c_i`, all share one ([`Norm`]).
+//!
+//! # The sets
+//!
+//! The forces of contact i with f1 = c_i form a disc of at most three dimensions, U_i (eq. 7). Its wrenches
+//! `W_i = G_i U_i = { center + disc x : |x| <= 1 }` are a [`Primitive`], with h_i(u) = center.u + |disc^T u|. Then
+//! ([`WrenchSet`])
+//!
+//! ```text
+//! W_L1   = hull({0} ∪ W_1 ∪ ... ∪ W_m)                   h = max(0, h_1, ..., h_m)
+//! W_Linf = hull({0} ∪ W_1) + ... + hull({0} ∪ W_m)       h = max(0, h_1) + ... + max(0, h_m)
+//! ```
+//!
+//! **{0} belongs to every primitive.** Read literally, eq. 5 adds sets in which every contact presses with full force.
+//! That misses the forces below the limit, and contradicts the paper's own row (a5) of Table I, 1.0000, which two
+//! fingers that press with equal forces could not give. The formulas above are those of eq. 3 with ||f|| <= 1.
+//!
+//! The active set U_i^a = U_i ∩ range(J_i) (Section III, eq. 9-15) is again such a disc, of fewer dimensions, a point,
+//! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat:
+//! [`Subspace`] finds the smallest subspace R that contains it.
+//!
+//! # What is not modelled
+//!
+//! * Compliance and dynamics: links, fingertips and object are rigid and at rest.
+//! * Two contacts of one finger are judged one by one, each against its own Jacobian, as if the other did
+//!   not need the joints. The forces that joint torques generate *together* are a subset; W^a is then an upper estimate.
+//! * Torque limits of the joints: the cap bounds the normal force of a contact, not the torque that makes it.
+//!
+//! # Failure
+//!
+//! What cannot be a contact is refused when it is built, with a [`ContactError`]; lists name the index of the contact
+//! ([`GraspError`]). A grasp that does not hold the object is not an error: its d is 0. Nothing here allocates or panics.
+//!
+//! # Sources
+//!
+//! The paper's Sections II and III. R. M. Murray, Z. X. Li, S. S. Sastry, *A Mathematical Introduction to Robotic
+//! Manipulation*, 1994 (contact maps, friction models). J. Demmel and K. Veselic, *Jacobi's method is more accurate
+//! than QR*, 1992 (the SVD).
+
+mod contact;
+mod frame;
+mod hand;
+mod jacobian;
+mod primitive;
+mod span;
+mod svd;
+mod wrench_set;
+
+pub use contact::{Contact, ContactError, Friction, GraspError};
+pub use frame::WrenchFrame;
+pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
+pub use jacobian::{Jacobian, MAX_JOINTS};
+pub use primitive::Primitive;
+pub use span::Subspace;
+pub use wrench_set::{Norm, WrenchSet};
+
+use crate::scalar::Real;
+
+/// The default relative tolerance of ranks: 1e-9 in `f64`. In `f32`, where the entries of a Jacobian are known to 6e-8 at
+/// best, 64 roundoffs, 3.8e-6.
+///
+/// ```
+/// assert_eq!(qdist::grasp::default_tolerance::<f64>(), 1e-9);
+/// ```
+pub fn default_tolerance<T: Real>() -> T {
+    T::of(1e-9).at_least(T::count(64) * T::ROUNDOFF)
+}
+
+/// A rank tolerance is between 16 roundoffs, what the arithmetic can tell apart, and 1/2.
+fn check_tolerance<T: Real>(tolerance: T) -> Result<(), ContactError> {
+    if tolerance >= T::count(16) * T::ROUNDOFF && tolerance <= T::of(0.5) {
+        Ok(())
+    } else {
+        Err(ContactError::Tolerance)
+    }
+}
+
+/// The largest number that is accepted: products of two are far from overflow. 4.5e15 in `f32`, 1.4e146 in `f64`.
+fn ceiling<T: Real>() -> T {
+    (T::HUGE * T::ROUNDOFF).root()
+}
+
+/// All finite and not too large. NaN fails the comparison.
+fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
+    numbers.all(|x| x.abs() <= ceiling())
+}

@@ -1,0 +1,234 @@
+//! The shared grasps: support functions at the reference directions, active sets, dimensions.
+//!
+//! The data lie beside the project (`../shared/data/grasps`); when they are missing, that is an error with `CI=true`
+//! and a printed line otherwise.
+#![cfg(feature = "grasp")]
+
+mod common;
+mod grasp_common;
+
+use grasp_common::vector;
+use nalgebra::SMatrix;
+use qdist::grasp::{
+    ActiveForces, Contact, Friction, HandContact, Jacobian, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
+    active_wrenches, default_tolerance, wrenches,
+};
+use qdist::{Real, Vector};
+use serde_json::Value;
+use std::path::Path;
+
+fn data(test: &str) -> Option<Vec<Value>> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/grasps/grasps.json");
+    let Ok(text) = std::fs::read_to_string(&file) else {
+        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs {file:?}");
+        println!("SKIPPED: {test}: {file:?} is not there");
+        return None;
+    };
+    let data: Value = serde_json::from_str(&text).unwrap();
+    let grasps = data["instances"].as_array().unwrap().clone();
+    assert!(grasps.len() >= 8);
+    Some(grasps)
+}
+
+fn numbers(v: &Value) -> Vec<f64> {
+    v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// The rows of a matrix.
+fn rows(v: &Value) -> Vec<Vec<f64>> {
+    v.as_array().unwrap().iter().map(numbers).collect()
+}
+
+/// Column `j` of the 6 x k matrix with these rows.
+fn column(rows: &[Vec<f64>], j: usize) -> Vector<f64, 6> {
+    Vector::from_fn(|i, _| rows[i][j])
+}
+
+/// M M^T of the 6 x k matrix with these rows.
+fn square(rows: &[Vec<f64>]) -> SMatrix<f64, 6, 6> {
+    SMatrix::from_fn(|i, j| rows[i].iter().zip(&rows[j]).map(|(a, b)| a * b).sum())
+}
+
+/// The direction of a reference in the coordinates of its Q. For an ellipsoid Q = D B the data have the unit vector D u.
+fn local_direction(r: &Value) -> Vec<f64> {
+    let u = numbers(&r["direction"]);
+    match r["Q"]["semi_axes"].as_array() {
+        Some(_) => u.iter().zip(numbers(&r["Q"]["semi_axes"])).map(|(x, a)| x / a).collect(),
+        None => u,
+    }
+}
+
+/// The direction of a reference as one of R^6: its coordinates refer to the columns of R, or to the rows of S, if there
+/// are any.
+fn direction(r: &Value) -> Vector<f64, 6> {
+    let u = local_direction(r);
+    let sum = |axis: &dyn Fn(usize) -> Vector<f64, 6>| (0..u.len()).map(|k| axis(k) * u[k]).sum();
+    if !r["R"].is_null() {
+        let basis = rows(&r["R"]);
+        sum(&|k| column(&basis, k))
+    } else if !r["Q"]["S"].is_null() {
+        let basis = rows(&r["Q"]["S"]);
+        sum(&|k| Vector::from_column_slice(&basis[k]))
+    } else {
+        Vector::from_column_slice(&u)
+    }
+}
+
+fn contact<T: Real>(v: &Value) -> HandContact<T> {
+    let point = |key: &str| vector::<T, 3>(numbers(&v[key]).try_into().unwrap());
+    let number = |key: &str| T::of(v[key].as_f64().unwrap());
+    let friction = match v["type"].as_str().unwrap() {
+        "soft" => Friction::Soft { mu: number("mu"), mus: number("mus") },
+        "hard" => Friction::Hard { mu: number("mu") },
+        "frictionless" => Friction::Frictionless,
+        other => panic!("contact type {other}"),
+    };
+    let contact = Contact::new(point("p"), point("n"), friction).unwrap();
+    let contact = contact.with_tangents(point("o"), point("t")).unwrap();
+    let jacobian = v["J"].as_array().map(|rows| {
+        let rows: Vec<Vec<T>> = rows.iter().map(|row| numbers(row).into_iter().map(T::of).collect()).collect();
+        Jacobian::new([&rows[0], &rows[1], &rows[2], &rows[3]]).unwrap()
+    });
+    HandContact { contact, jacobian }
+}
+
+/// What is read from a grasp: passive and active primitives, in the data's own scaled units.
+struct Grasp<T: Real> {
+    id: String,
+    hand: Vec<HandContact<T>>,
+    passive: Vec<Primitive<T>>,
+    active: Vec<Primitive<T>>,
+}
+
+fn frame<T: Real>() -> WrenchFrame<T> {
+    WrenchFrame::new(Vector::zeros(), T::one()).unwrap()
+}
+
+fn read<T: Real>(v: &Value) -> Grasp<T> {
+    let hand: Vec<HandContact<T>> = v["contacts"].as_array().unwrap().iter().map(contact).collect();
+    let contacts: Vec<Contact<T>> = hand.iter().map(|c| c.contact).collect();
+    let mut memory = vec![Primitive::empty(); hand.len()];
+    let passive = wrenches(&contacts, &frame(), &mut memory).unwrap().to_vec();
+    let active = active_wrenches(&hand, &frame(), default_tolerance(), &mut memory).unwrap().to_vec();
+    Grasp { id: v["id"].as_str().unwrap().to_string(), hand, passive, active }
+}
+
+/// The norm of `refs` entry `r`.
+fn norm(r: &Value) -> Norm {
+    match r["norm"].as_str().unwrap() {
+        "L1" => Norm::L1,
+        "Linf" => Norm::LInf,
+        other => panic!("norm {other}"),
+    }
+}
+
+/// h_Q at the reference's own direction.
+fn gauge(q: &Value, u: &[f64]) -> f64 {
+    let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let scaled = |key: &str| -> Vec<f64> { numbers(&q[key]).iter().zip(u).map(|(a, x)| (a * x).abs()).collect() };
+    match q["type"].as_str().unwrap() {
+        "ball" => norm(u),
+        "ellipsoid" => norm(&scaled("semi_axes")),
+        "box" => scaled("half_widths").iter().sum(),
+        "cross_polytope" => scaled("half_axes").iter().copied().fold(0.0, f64::max),
+        "segment" => numbers(&q["wrench"]).iter().zip(u).map(|(a, x)| a * x).sum::<f64>().max(0.0),
+        other => panic!("Q {other}"),
+    }
+}
+
+/// h_W(direction) / h_Q(direction) is d, for every reference with a direction.
+fn values<T: Real>(test: &str, tolerance: f64) {
+    let Some(grasps) = data(test) else { return };
+    let (mut smooth, mut others, mut active) = (0, 0, 0);
+    let mut widest = 0.0f64;
+    for v in &grasps {
+        let grasp = read::<T>(v);
+        for r in v["refs"].as_array().unwrap() {
+            if r["direction"].is_null() {
+                continue;
+            }
+            let is_active = r["set"] == "Wa";
+            let primitives = if is_active { &grasp.active } else { &grasp.passive };
+            let set = WrenchSet::new(primitives, norm(r));
+            let u = vector::<T, 6>(direction(r).into());
+            let (found, d) = (set.value(&u).to_f64() / gauge(&r["Q"], &local_direction(r)), r["d"].as_f64().unwrap());
+            let kind = r["Q"]["type"].as_str().unwrap();
+            assert!((found - d).abs() <= tolerance * d, "{} {} {:?} {kind}: {found} {d}", grasp.id, r["set"], norm(r));
+            if d > 0.0 {
+                widest = widest.max((found - d).abs() / d);
+            }
+            *if kind == "ball" || kind == "ellipsoid" { &mut smooth } else { &mut others } += 1;
+            active += usize::from(is_active);
+        }
+    }
+    println!("{smooth} references with ball or ellipsoid, {others} others, {active} of them active: to {widest:.1e}");
+    assert!(smooth >= 30 && others >= 15 && active >= 12);
+}
+
+#[test]
+fn values_at_the_reference_directions_in_f64() {
+    values::<f64>("values_at_the_reference_directions_in_f64", 1e-8);
+}
+
+#[test]
+fn values_at_the_reference_directions_in_f32() {
+    values::<f32>("values_at_the_reference_directions_in_f32", 2e-5);
+}
+
+/// Ranks, emptiness, centers, discs and the dimension of W^a.
+#[test]
+fn active_sets_are_those_of_the_references() {
+    let Some(grasps) = data("active_sets_are_those_of_the_references") else { return };
+    let (mut sets, mut spans) = (0, 0);
+    for v in &grasps {
+        let grasp = read::<f64>(v);
+        for r in v["refs"].as_array().unwrap().iter().filter(|r| !r["dim"].is_null()) {
+            let dimension = r["dim"].as_u64().unwrap() as usize;
+            let subspace = Subspace::new(&grasp.active, default_tolerance()).unwrap();
+            assert_eq!(subspace.dimension(), dimension, "{}", grasp.id);
+            // The same subspace: every basis vector of one lies in the other.
+            for k in 0..dimension {
+                assert!(subspace.distance(&column(&rows(&r["R"]), k)) < 1e-9, "{}", grasp.id);
+            }
+            spans += 1;
+            for (rank, c) in numbers(&r["ranks"]).iter().zip(&grasp.hand) {
+                let jacobian = c.jacobian.unwrap();
+                assert_eq!(jacobian.rank(1.0, default_tolerance()), Ok(*rank as usize));
+            }
+            let Some(references) = r["contacts"].as_array() else { continue };
+            for ((want, c), primitive) in references.iter().zip(&grasp.hand).zip(&grasp.active) {
+                let forces =
+                    ActiveForces::new(&c.contact, &c.jacobian.unwrap(), &frame(), default_tolerance()).unwrap();
+                assert_eq!(forces.rank(), want["rank"].as_u64().unwrap() as usize);
+                assert_eq!(primitive.is_empty(), want["empty"].as_bool().unwrap());
+                assert_eq!(forces.dimension(), want["dim_U"].as_u64().map(|d| d as usize));
+                if !primitive.is_empty() {
+                    let center = Vector::<f64, 6>::from_column_slice(&numbers(&want["c"]));
+                    assert!((primitive.center() - center).amax() < 1e-9, "{}", grasp.id);
+                    let disc = primitive.disc() * primitive.disc().transpose();
+                    assert!((disc - square(&rows(&want["M"]))).amax() < 1e-9, "{}", grasp.id);
+                }
+                sets += 1;
+            }
+        }
+    }
+    println!("{sets} active sets, {spans} subspaces");
+    assert!(sets >= 10 && spans >= 6);
+}
+
+/// The lock on a joint takes force closure away, W^a has a direction with h = 0; the free hand has none near it.
+#[test]
+fn a_grasp_that_does_not_hold_has_a_direction_without_resistance() {
+    let Some(grasps) = data("a_grasp_that_does_not_hold_has_a_direction_without_resistance") else { return };
+    let mut found = 0;
+    for v in &grasps {
+        let grasp = read::<f64>(v);
+        for r in v["refs"].as_array().unwrap().iter().filter(|r| r["force_closure"] == false) {
+            let u = direction(r);
+            let primitives = if r["set"] == "Wa" { &grasp.active } else { &grasp.passive };
+            assert_eq!(WrenchSet::new(primitives, norm(r)).value(&u), 0.0, "{}", grasp.id);
+            found += 1;
+        }
+    }
+    assert!(found >= 2);
+}
