@@ -2,6 +2,7 @@
 
 use crate::methods::{Method, Tolerance};
 use crate::report::{Row, best_by_eps, duration};
+use crate::scan_and_match::Matching;
 
 /// A case, what was found, the bar, and whether it is met (`None`: not measured).
 struct Bar {
@@ -13,12 +14,16 @@ struct Bar {
 
 const FINE: Tolerance = Tolerance::Absolute(1e-4);
 
-/// The row of a method in `f64` at this tolerance: with this capacity, or with the greatest one below it that left memory over, since
-/// such a run is not repeated with more.
-fn find<'a>(rows: &'a [Row], case: &str, method: Method, tolerance: Tolerance, capacity: usize) -> Option<&'a Row> {
-    let fits = |r: &&Row| r.case == case && r.method == method && r.scalar == "f64" && r.tolerance == tolerance;
-    let rows = rows.iter().filter(fits).filter(|r| r.max_facets == capacity || r.max_facets < capacity && r.spare);
-    rows.max_by_key(|r| r.max_facets)
+/// The row in `f64` that tells what happens at this tolerance with this capacity. A run that left memory over stands for those
+/// with more of it, and one that ended for want of memory for those with a smaller eps: neither is repeated.
+fn find<'a>(rows: &'a [Row], case: &str, capacity: usize) -> Option<&'a Row> {
+    let of_case = rows.iter().filter(|r| r.case == case && r.method == Method::Qdist && r.scalar == "f64");
+    let stands = |r: &&Row| {
+        let memory = r.max_facets == capacity || r.max_facets < capacity && r.spare;
+        let eps = r.tolerance == FINE || r.tolerance.value() > FINE.value() && !r.converged();
+        memory && eps
+    };
+    of_case.filter(stands).max_by_key(|r| r.max_facets)
 }
 
 /// These runs converge, the slowest within so many milliseconds.
@@ -78,8 +83,9 @@ fn faster(rows: &[Row], case: &str, than: Method, least: f64) -> Bar {
 
 /// One line a bar.
 pub fn summary(rows: &[Row], small: usize) -> String {
-    let at = |case: &str, capacity| find(rows, case, Method::Qdist, FINE, capacity);
+    let at = |case: &str, capacity| find(rows, case, capacity);
     let mut cases: Vec<&str> = rows.iter().map(|r| r.case.as_str()).collect();
+    cases.sort_unstable();
     cases.dedup();
     let four: Vec<&str> = cases.iter().copied().filter(|c| c.starts_with("soft4_")).collect();
     let fours = |capacity| four.iter().map(|c| at(c, capacity)).collect::<Vec<_>>();
@@ -97,10 +103,10 @@ pub fn summary(rows: &[Row], small: usize) -> String {
         random(rows),
     ];
     let ball = |c: &&str| *c == "a1" || c.starts_with("soft");
-    cases.sort_unstable();
-    cases.dedup();
-    for case in cases.iter().filter(|c| ball(c) && rows.iter().any(|r| r.case == **c && r.method == Method::Scan)) {
-        bars.push(faster(rows, case, Method::Scan, 8.0));
+    let scanned = |c: &&str| rows.iter().any(|r| r.case == *c && r.method == Method::Scan(Matching::Pairs));
+    for case in cases.iter().copied().filter(ball).filter(scanned) {
+        bars.push(faster(rows, case, Method::Scan(Matching::Pairs), 8.0));
+        bars.push(faster(rows, case, Method::Scan(Matching::Sorted), 0.0));
     }
     for case in ["a1", "a2", "a3", "a4", "a5"].into_iter().chain(four) {
         bars.push(faster(rows, case, Method::Expand, 0.0));

@@ -28,6 +28,7 @@ use nalgebra::{Const, DimMin};
 use qdist::workspace::MAX_CAPACITY;
 use qdist::{Outcome, Real};
 use report::Row;
+use scan_and_match::Matching;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -54,7 +55,7 @@ const FULL: Effort = Effort {
 };
 
 const QUICK: Effort = Effort {
-    eps: &[1e-2, 1e-4],
+    eps: &[1e-2, 1e-3, 1e-4],
     capacities: &[512, 2048, 4096],
     sample: Duration::from_millis(30),
     patience: Duration::from_millis(100),
@@ -122,15 +123,15 @@ impl Bench {
         self.ladder::<f64, N>(case, Method::Expand, 0.0, &[8192, MAX_CAPACITY]);
     }
 
-    fn scan<const N: usize>(&mut self, case: &Case<N>)
+    fn scan<const N: usize>(&mut self, case: &Case<N>, matching: Matching)
     where
         Const<N>: DimMin<Const<N>, Output = Const<N>>,
     {
-        if !self.in_time(format!("{}{}", case.name, Method::Scan.suffix())) {
+        if !self.in_time(format!("{}{}", case.name, Method::Scan(matching).suffix())) {
             return;
         }
         for &eps in self.effort.eps {
-            let row = methods::scan(case, Tolerance::Absolute(eps), self.effort.sample, self.effort.limit);
+            let row = methods::scan(case, matching, Tolerance::Absolute(eps), self.effort.sample, self.effort.limit);
             let goes_on = self.goes_on(&row);
             self.push(row);
             if !goes_on {
@@ -170,10 +171,11 @@ fn measure(bench: &mut Bench) {
         bench.push(row);
     }
     for case in space.iter().chain(recorded.iter().filter(|c| c.name.starts_with("soft"))) {
-        bench.scan(case);
+        bench.scan(case, Matching::Pairs);
+        bench.scan(case, Matching::Sorted);
         bench.expand(case);
     }
-    plane.iter().for_each(|case| bench.scan(case));
+    plane.iter().for_each(|case| bench.scan(case, Matching::Pairs));
     plane.iter().for_each(|case| bench.expand(case));
     made_up.iter().for_each(|case| bench.qdist::<f64, 6>(case, 0.0));
     [&space[0], &space[2], &space[3]].into_iter().for_each(|case| bench.qdist::<f32, 6>(case, 1e-4));

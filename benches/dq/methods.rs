@@ -2,7 +2,7 @@
 
 use crate::cases::Case;
 use crate::report::Row;
-use crate::scan_and_match;
+use crate::scan_and_match::{self, Matching};
 use nalgebra::{Const, DimMin};
 use qdist::qset::Gauge;
 use qdist::support::Support;
@@ -19,7 +19,7 @@ pub enum Method {
     /// Expansion only, whatever the query: what the solver's plans are measured against.
     Expand,
     /// The paper's bookkeeping.
-    Scan,
+    Scan(Matching),
 }
 
 impl Method {
@@ -28,7 +28,8 @@ impl Method {
         match self {
             Method::Qdist => "",
             Method::Expand => "/expand",
-            Method::Scan => "/scan",
+            Method::Scan(Matching::Pairs) => "/scan",
+            Method::Scan(Matching::Sorted) => "/scan_sorted",
         }
     }
 }
@@ -113,13 +114,19 @@ pub fn run<T: Real, const N: usize>(
 }
 
 /// One row of the baseline, for which `bytes` is what its list and its points took.
-pub fn scan<const N: usize>(case: &Case<N>, tolerance: Tolerance, sample: Duration, limit: Duration) -> Row
+pub fn scan<const N: usize>(
+    case: &Case<N>,
+    matching: Matching,
+    tolerance: Tolerance,
+    sample: Duration,
+    limit: Duration,
+) -> Row
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     let (a, q) = (case.a::<f64>(), case.q::<f64>());
     let (found, times) =
-        repeat(sample, || black_box(scan_and_match::solve(&*a, &*q, tolerance.value(), MAX_CAPACITY, limit)));
+        repeat(sample, || black_box(scan_and_match::solve(&*a, &*q, matching, tolerance.value(), MAX_CAPACITY, limit)));
     Row {
         max_facets: MAX_CAPACITY,
         bytes: found.bytes,
@@ -130,7 +137,7 @@ where
         support_calls: found.support_calls,
         peak_facets: found.peak,
         spare: found.outcome == Outcome::Converged,
-        ..Row::new::<f64, N>(case, Method::Scan, tolerance, times)
+        ..Row::new::<f64, N>(case, Method::Scan(matching), tolerance, times)
     }
 }
 

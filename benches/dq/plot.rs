@@ -2,6 +2,7 @@
 
 use crate::methods::Method;
 use crate::report::Row;
+use crate::scan_and_match::Matching;
 use plotters::prelude::*;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -33,7 +34,8 @@ fn curve_name(row: &Row) -> String {
     match row.method {
         Method::Qdist => format!("qdist, {} facets", row.max_facets),
         Method::Expand => format!("plain expansion, {}", row.max_facets),
-        Method::Scan => "scan and match".into(),
+        Method::Scan(Matching::Pairs) => "scan and match".into(),
+        Method::Scan(Matching::Sorted) => "scan, sorted matching".into(),
     }
 }
 
@@ -55,9 +57,9 @@ fn draw(case: &str, rows: &[&Row], file: &Path) -> Result<(), Box<dyn Error>> {
     let power = |x: &f64| format!("{x:.0e}");
     let mut mesh = chart.configure_mesh();
     mesh.x_desc("time, ms").y_desc("upper - lower").x_label_formatter(&power).y_label_formatter(&power).draw()?;
-    let mut curves: BTreeMap<(usize, usize), Vec<&Row>> = BTreeMap::new();
+    let mut curves: BTreeMap<(&str, usize), Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        curves.entry((row.method as usize, row.max_facets)).or_default().push(row);
+        curves.entry((row.method.suffix(), row.max_facets)).or_default().push(row);
     }
     for (i, curve) in curves.values().enumerate() {
         let color = Palette99::pick(i).to_rgba();

@@ -158,7 +158,8 @@ pub fn fits(rows: &[Row]) -> String {
         if ks.len() < 3 {
             continue;
         }
-        let exponent = |of: fn(&Row) -> f64| slope(runs.iter().map(|r| (f64::from(r.iterations).ln(), of(r).ln())));
+        let exponent =
+            |of: fn(&Row) -> f64| slope(runs.iter().map(|r| (f64::from(r.iterations).ln(), of(r).max(1.0).ln())));
         let (time, facets) = (exponent(|r| r.median), exponent(|r| r.peak_facets as f64));
         let (n, points) = (runs[0].n, runs.len());
         let _ = writeln!(text, "{name},{n},{scalar},{points},{first},{last},{time:.3},{facets:.3}");

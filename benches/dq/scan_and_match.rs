@@ -1,9 +1,9 @@
 //! The paper's bookkeeping (Sections IV-B and IV-C), as a baseline.
 //!
 //! Facets are a flat list without links. The next facet is the lowest of all (eq. 21); the eliminated facets are found by
-//! testing all (Proposition 3), the new ones by comparing the ridges of the eliminated ones (Proposition 4; a sorted list, which is
-//! kinder than all pairs), and every normal solves a linear system (eq. 22). The time of an iteration is
-//! proportional to the facets there are, by several passes over them.
+//! testing all (Proposition 3), the new ones by comparing the ridges of the eliminated ones (Proposition 4), and every normal
+//! solves a linear system (eq. 22). The paper does not say how ridges are compared: "for the facets of every eliminated
+//! facet" is taken to mean all pairs, and a sorted list is the kinder reading.
 //!
 //! Two liberties, both in the baseline's favour. With a strict ">" Proposition 3 corrupts the surface where facets are coplanar, so
 //! visibility has a tolerance of 1e-13 of A's size. And the first simplex is any n + 1 support points: eq. 22 is
@@ -16,6 +16,13 @@ use qdist::qset::Gauge;
 use qdist::support::Support;
 use qdist::{Outcome, Vector};
 use std::time::{Duration, Instant};
+
+/// How ridges of eliminated facets are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Matching {
+    Pairs,
+    Sorted,
+}
 
 struct Facet<const N: usize> {
     /// Ascending.
@@ -48,6 +55,7 @@ struct Surface<'a, const N: usize> {
 pub fn solve<const N: usize>(
     a: &dyn Support<f64, N>,
     q: &dyn Gauge<f64, N>,
+    matching: Matching,
     eps: f64,
     max_facets: usize,
     time: Duration,
@@ -88,7 +96,7 @@ where
         if begin.elapsed() > time {
             break Outcome::Iterations;
         }
-        if height - offset <= tolerance || !surface.insert(point, tolerance) {
+        if height - offset <= tolerance || !surface.insert(point, tolerance, matching) {
             break Outcome::Precision;
         }
         iterations += 1;
@@ -139,7 +147,7 @@ where
     }
 
     /// Propositions 3 and 4. False when a new facet spans no plane, or nothing is eliminated.
-    fn insert(&mut self, point: Vector<f64, N>, tolerance: f64) -> bool {
+    fn insert(&mut self, point: Vector<f64, N>, tolerance: f64, matching: Matching) -> bool {
         let mut ridges = Vec::new();
         self.facets.retain(|f| {
             let eliminated = f.normal.dot(&point) - f.offset > tolerance;
@@ -148,18 +156,27 @@ where
             }
             !eliminated
         });
-        ridges.sort_unstable();
         let apex = self.points.len() as u32;
         self.points.push(point);
-        // A ridge of two eliminated facets comes twice.
-        let single = ridges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
-        let mut apart = single.map(|same| same[0]).peekable();
-        apart.peek().is_some()
-            && apart.all(|mut ridge| {
+        let horizon = match matching {
+            Matching::Pairs => single_among_pairs(&ridges),
+            Matching::Sorted => {
+                ridges.sort_unstable();
+                ridges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).map(|same| same[0]).collect()
+            }
+        };
+        !horizon.is_empty()
+            && horizon.into_iter().all(|mut ridge| {
                 ridge[N - 1] = apex;
                 self.add(ridge)
             })
     }
+}
+
+/// A ridge of two eliminated facets comes twice: those that come once.
+fn single_among_pairs<const N: usize>(ridges: &[[u32; N]]) -> Vec<[u32; N]> {
+    let twice = |(i, ridge): &(usize, &[u32; N])| ridges[..*i].contains(ridge) || ridges[i + 1..].contains(ridge);
+    ridges.iter().enumerate().filter(|x| !twice(x)).map(|(_, &ridge)| ridge).collect()
 }
 
 /// A facet's vertices but one, and a last place that is the same for all.
