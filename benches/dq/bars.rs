@@ -14,7 +14,7 @@ struct Bar {
 
 const FINE: Tolerance = Tolerance::Absolute(1e-4);
 
-/// The row in `f64` that tells what happens at this tolerance with this capacity. A run that left memory over stands for those
+/// The row in `f64` that tells what happens at 1e-4 with this capacity. A run that left memory over stands for those
 /// with more of it, and one that ended for want of memory for those with a smaller eps: neither is repeated.
 fn find<'a>(rows: &'a [Row], case: &str, capacity: usize) -> Option<&'a Row> {
     let of_case = rows.iter().filter(|r| r.case == case && r.method == Method::Qdist && r.scalar == "f64");

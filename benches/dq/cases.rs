@@ -101,8 +101,8 @@ pub fn solids<const N: usize>() -> [Case<N>; 2] {
     [case("ellipsoid", Set::Ellipsoid(axes)), case("box", Set::Box(axes))]
 }
 
-/// The grasps of the data file with the unit ball; empty when there is no such file. Every normal force is bounded; for two of
-/// them, also their sum.
+/// The grasps of the data file with the unit ball; empty when there is no such file. The unit bounds every normal
+/// force; for two of them, in another case, the sum of the normal forces.
 pub fn recorded() -> Vec<Case<6>> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/grasps/grasps.json");
     let Ok(text) = std::fs::read_to_string(file) else {

@@ -1,11 +1,12 @@
 //! Grasps as sets: the wrenches that contacts can exert, known by their support function (paper, Section II).
 //!
-//! A contact at p with inward normal n and tangents o, t maps a force (f1, f2, f3) and a torque f4 about the normal to the
-//! wrench G f, with G = [n o t 0; p x n, p x o, p x t, n]. A soft finger exerts the f with f1 <= 1 and
+//! A contact at p with inward normal n and tangents o, t maps a force (f1, f2, f3) and a torque f4 about the normal
+//! to the wrench G f, with G = [n o t 0; p x n, p x o, p x t, n]. A soft finger exerts the f with f1 <= 1 and
 //! sqrt((f2^2 + f3^2) / mu^2 + f4^2 / mus^2) <= f1: a cone over an ellipsoid, so that with g = G' u
 //!
 //! ```text
-//! h_i(u) = g1 + s,  s = sqrt(mu^2 (g2^2 + g3^2) + mus^2 g4^2),   at   f = (1, mu^2 g2, mu^2 g3, mus^2 g4) / (1, s, s, s)
+//! h_i(u) = g1 + s,  s = sqrt(mu^2 (g2^2 + g3^2) + mus^2 g4^2)
+//!                   attained at f = (1, mu^2 g2 / s, mu^2 g3 / s, mus^2 g4 / s)
 //! ```
 //!
 //! A hard finger has mus = 0 and a frictionless one mu = 0 too. Columns of G are stored times 1, mu, mu, mus: then the
@@ -38,8 +39,8 @@ pub fn spatial(p: Vector3<f64>, [n, o, t]: [Vector3<f64>; 3], mu: f64, mus: f64)
     Contact::from_columns(&[force(n), force(o) * mu, force(t) * mu, wrench(Vector3::zeros(), n) * mus])
 }
 
-/// The part of a contact that a finger exerts whose joints all turn about z, in (f_x, f_y, m_z): no force along z, no torque about
-/// the normal. (For a contact with p, n, o in that plane; W^a of Section III.)
+/// The part of a contact that a finger exerts whose joints all turn about z, in (f_x, f_y, m_z): no force along z, no
+/// torque about the normal. (For a contact with p, n, o in that plane; W^a of Section III.)
 pub fn planar(contact: &Contact<6>) -> Contact<3> {
     Contact::from_fn(|i, j| if j < 2 { contact[([0, 1, 5][i], j)] } else { 0.0 })
 }
@@ -100,8 +101,9 @@ impl<T: Real, const N: usize> Support<T, N> for Grasp<T, N> {
         self.extent
     }
 
-    /// Roundings, each relative to a contact's size: N + 1 in every g, which count twice, as they may choose another point and a
-    /// wrong sign; 8 in the point of the unit ball, 5 in its wrench; one for each contact in the sum.
+    /// Roundings, each relative to a contact's size: N + 1 in every g, which count twice, as they may choose another
+    /// point and a wrong sign; 8 in the point of the unit ball, 5 in its wrench; one for each contact in the sum.
+    /// Twice that, to be safe.
     fn error(&self) -> T {
         T::count(2 * (N + 1) + 13 + self.contacts.len()) * T::count(2) * T::ROUNDOFF * self.extent
     }

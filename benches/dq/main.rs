@@ -1,7 +1,8 @@
-//! d_Q in up to six dimensions: time, memory and width of the bracket, against plain expansion and the paper's bookkeeping.
+//! d_Q in up to six dimensions: time, memory and width of the bracket, against plain expansion and the paper's
+//! bookkeeping.
 //!
-//! `make bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the bars the
-//! project has set itself.
+//! `make bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the
+//! bars the project has set itself.
 //!
 //! Every case is run on a ladder of tolerances and capacities. Left out are the runs that could tell nothing new:
 //! * more memory, where less was not half full;

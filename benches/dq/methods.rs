@@ -57,8 +57,8 @@ impl Tolerance {
     }
 }
 
-/// Vertices that go with so many facets. Each vertex has about 1, 2, 5, 10 and 35 live facets in dimension 2 to 6, and more in large
-/// hulls; dead vertices keep their place.
+/// Vertices that go with so many facets. Each vertex has about 1, 2, 5, 10 and 35 live facets in dimension 2 to 6, and
+/// more in large hulls; dead vertices keep their place.
 pub fn vertices(n: usize, facets: usize) -> usize {
     (facets / [1, 1, 1, 2, 4, 4, 8][n]).max(64)
 }
@@ -87,11 +87,10 @@ pub fn run<T: Real, const N: usize>(
     max_facets: usize,
     sample: Duration,
 ) -> Row {
-    let max_facets = max_facets.min(MAX_CAPACITY);
-    let layout = Layout::new::<T, N>(vertices(N, max_facets).min(MAX_CAPACITY), max_facets).expect("a capacity");
+    let max_vertices = vertices(N, max_facets);
+    let layout = Layout::new::<T, N>(max_vertices, max_facets).expect("a capacity");
     let mut memory = vec![MaybeUninit::uninit(); layout.bytes() + Layout::ALIGN];
     let skip = memory.as_ptr().align_offset(Layout::ALIGN);
-    let max_vertices = vertices(N, max_facets).min(MAX_CAPACITY);
     let mut solver = place::<T, N>(&mut memory[skip..], max_vertices, max_facets).expect("memory of that layout");
     let (a, q, options) = (case.a::<T>(), case.q::<T>(), tolerance.options());
     let mut solve = || match method {
@@ -141,7 +140,8 @@ where
     }
 }
 
-/// Runs once to warm up, then for `sample`: at least five times when that is short, three times up to a second, once beyond. Nanoseconds, ascending.
+/// Runs once to warm up, then for `sample`, but at least five times; three times when a run takes more than 0.1 s,
+/// once when it takes more than a second. The times are in nanoseconds, ascending.
 fn repeat<R>(sample: Duration, mut run: impl FnMut() -> R) -> (R, Vec<f64>) {
     let mut timed = || {
         let start = Instant::now();

@@ -39,13 +39,19 @@ fn curve_name(row: &Row) -> String {
     }
 }
 
+/// Whole decades around a range, at least two: the labels of an axis with fewer would overlap.
+fn decades(low: f64, high: f64) -> std::ops::Range<f64> {
+    let (first, last) = (low.log10().floor(), high.log10().ceil());
+    10f64.powf(first)..10f64.powf(last.max(first + 2.0))
+}
+
 fn draw(case: &str, rows: &[&Row], file: &Path) -> Result<(), Box<dyn Error>> {
     let (mut times, mut errors) = ([f64::MAX, 0.0], [f64::MAX, 0.0]);
     for (time, error) in rows.iter().map(|r| point(r)) {
         times = [times[0].min(time), times[1].max(time)];
         errors = [errors[0].min(error), errors[1].max(error)];
     }
-    let [times, errors] = [times, errors].map(|[low, high]| (low / 2.0..high * 2.0).log_scale());
+    let [times, errors] = [times, errors].map(|[low, high]| decades(low, high).log_scale());
     let root = SVGBackend::new(file, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&root)
@@ -71,7 +77,8 @@ fn draw(case: &str, rows: &[&Row], file: &Path) -> Result<(), Box<dyn Error>> {
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color.stroke_width(2)));
         chart.draw_series(points().map(|p| Circle::new(p, 3, color.filled())))?;
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
+    let mut legend = chart.configure_series_labels();
+    legend.position(SeriesLabelPosition::LowerLeft).background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
     root.present()?;
     Ok(())
 }

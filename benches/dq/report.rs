@@ -141,8 +141,8 @@ pub fn best_by_eps<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<&'a Row> {
     best
 }
 
-/// `fit.csv`: time ~ K^p and peak facets ~ K^p, where at least three runs differ in K. With conewise expansion the facets are the
-/// capacity, and their exponent is near 0.
+/// `fit.csv`: time ~ K^p and peak facets ~ K^p, where at least three runs differ in K. Where a run fills its memory and
+/// goes on, the facets are the capacity, and their exponent is near 0.
 pub fn fits(rows: &[Row]) -> String {
     let mut groups: BTreeMap<(String, &str), Vec<&Row>> = BTreeMap::new();
     for row in rows {

@@ -1,13 +1,13 @@
 //! The paper's bookkeeping (Sections IV-B and IV-C), as a baseline.
 //!
-//! Facets are a flat list without links. The next facet is the lowest of all (eq. 21); the eliminated facets are found by
-//! testing all (Proposition 3), the new ones by comparing the ridges of the eliminated ones (Proposition 4), and every normal
-//! solves a linear system (eq. 22). The paper does not say how ridges are compared: "for the facets of every eliminated
-//! facet" is taken to mean all pairs, and a sorted list is the kinder reading.
+//! Facets are a flat list without links. The next facet is the lowest of all (eq. 21); the eliminated facets are found
+//! by testing all (Proposition 3), the new ones by comparing the ridges of the eliminated ones (Proposition 4), and
+//! every normal solves a linear system (eq. 22). The paper does not say how ridges are compared: "verifying Proposition 4
+//! for the facets of every eliminated facet" is taken to mean all pairs, and a sorted list is the kinder reading.
 //!
-//! Two liberties, both in the baseline's favour. With a strict ">" Proposition 3 corrupts the surface where facets are coplanar, so
-//! visibility has a tolerance of 1e-13 of A's size. And the first simplex is any n + 1 support points: eq. 22 is
-//! solved about its centroid instead of the origin, which need not be inside.
+//! Two liberties, both in the baseline's favour. With a strict ">" Proposition 3 corrupts the surface where facets are
+//! coplanar, so visibility has a tolerance of 1e-13 of A's size. And the first simplex is any n + 1 support points:
+//! eq. 22 is solved about its centroid instead of the origin, which need not be inside.
 //!
 //! The bracket is not rounded outwards: this measures time, it certifies nothing.
 
@@ -50,8 +50,8 @@ struct Surface<'a, const N: usize> {
     inside: Vector<f64, N>,
 }
 
-/// Ends with `Capacity` when there are more facets than that, with `Iterations` when time is up, and with `Precision` when the
-/// surface is no longer one.
+/// Ends with `Capacity` when there are more facets than that, with `Iterations` when time is up, and with `Precision`
+/// when the surface is no longer one.
 pub fn solve<const N: usize>(
     a: &dyn Support<f64, N>,
     q: &dyn Gauge<f64, N>,
@@ -106,7 +106,8 @@ where
     Result { outcome, lower, upper, iterations, support_calls: calls, peak, bytes }
 }
 
-/// n + 1 affinely independent points of A: each as far as possible from the flat through those before it, one way or the other.
+/// n + 1 affinely independent points of A: each as far as possible from the flat through those before it, one way or
+/// the other.
 fn first_simplex<const N: usize>(mut support: impl FnMut(&Vector<f64, N>) -> Vector<f64, N>) -> Vec<Vector<f64, N>> {
     let axis = |i: usize| Vector::<f64, N>::from_fn(|j, _| f64::from(u8::from(i == j)));
     let mut points = vec![support(&axis(0))];
