@@ -4,6 +4,9 @@
 //! `make bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the
 //! bars the project has set itself.
 //!
+//! A suffix of a case's name says what was run: nothing for the solver, `/expand`, `/scan`, `/scan_sorted`. `eps` is
+//! absolute; relative for the cases `random_*`.
+//!
 //! Every case is run on a ladder of tolerances and capacities. Left out are the runs that could tell nothing new:
 //! * more memory, where less was not half full;
 //! * a smaller eps in the same memory, after a run ended for want of memory or of digits (it would be that run again);

@@ -2,8 +2,9 @@
 //!
 //! Facets are a flat list without links. The next facet is the lowest of all (eq. 21); the eliminated facets are found
 //! by testing all (Proposition 3), the new ones by comparing the ridges of the eliminated ones (Proposition 4), and
-//! every normal solves a linear system (eq. 22). The paper does not say how ridges are compared: "verifying Proposition 4
-//! for the facets of every eliminated facet" is taken to mean all pairs, and a sorted list is the kinder reading.
+//! every normal solves a linear system (eq. 22). The paper does not say how ridges are compared: "by verifying
+//! Proposition 4 for the facets of every eliminated facet" is taken to mean all pairs; a sorted list is the kinder
+//! reading.
 //!
 //! Two liberties, both in the baseline's favour. With a strict ">" Proposition 3 corrupts the surface where facets are
 //! coplanar, so visibility has a tolerance of 1e-13 of A's size. And the first simplex is any n + 1 support points:
