@@ -53,7 +53,7 @@ const FULL: Effort = Effort {
     eps: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
     capacities: &[512, 1024, 2048, 4096, 8192],
     sample: Duration::from_millis(100),
-    patience: Duration::from_millis(200),
+    patience: Duration::from_millis(100),
     limit: Duration::from_secs(20),
     budget: Duration::from_secs(300),
 };

@@ -140,26 +140,25 @@ where
     }
 }
 
-/// Runs once to warm up, then for `sample`, but at least five times; three times when a run takes more than 0.1 s,
-/// once when it takes more than a second. The times are in nanoseconds, ascending.
+/// Runs for `sample`, at least five times after one to warm up; long runs need none, and are run three times up to a
+/// second, once beyond. The times are in nanoseconds, ascending.
 fn repeat<R>(sample: Duration, mut run: impl FnMut() -> R) -> (R, Vec<f64>) {
     let mut timed = || {
         let start = Instant::now();
         let result = run();
-        (result, start.elapsed())
+        (result, start.elapsed().as_secs_f64() * 1e9)
     };
     let (mut result, first) = timed();
-    let least = match first.as_secs_f64() {
-        s if s > 1.0 => 1,
-        s if s > 0.1 => 3,
-        _ => 5,
+    let (mut times, least) = match first {
+        ns if ns > 1e9 => (vec![first], 1),
+        ns if ns > 1e8 => (vec![first], 3),
+        _ => (Vec::new(), 5),
     };
     let begin = Instant::now();
-    let mut times = Vec::new();
-    while times.len() < least || (begin.elapsed() < sample && times.len() < 1001) {
+    while times.len() < least || (begin.elapsed() < sample && times.len() < 1001 && first < 1e8) {
         let (again, time) = timed();
         result = again;
-        times.push(time.as_secs_f64() * 1e9);
+        times.push(time);
     }
     times.sort_by(f64::total_cmp);
     (result, times)
