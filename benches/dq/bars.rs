@@ -35,7 +35,8 @@ fn within(what: &str, runs: &[Option<&Row>], limit: f64) -> Bar {
     let slowest = runs.iter().max_by(|a, b| a.median.total_cmp(&b.median)).expect("not empty");
     let open = runs.iter().find(|r| !r.converged());
     let tail = open.map_or(String::new(), |r| format!(", {}: {}", r.name(), r.outcome_name()));
-    let found = format!("{}{tail}", duration(slowest.median));
+    let [low, high] = slowest.spread.map(duration);
+    let found = format!("{} ({low} .. {high}){tail}", duration(slowest.median));
     Bar { what: what.into(), found, bar, met: Some(open.is_none() && slowest.median <= limit * 1e6) }
 }
 
@@ -129,6 +130,6 @@ pub fn summary(rows: &[Row], small: usize) -> String {
         Some(false) => "MISSED",
         None => "-",
     };
-    let line = |b: &Bar| format!("{:52} {:44} {:14} {}\n", b.what, b.found, b.bar, verdict(b));
+    let line = |b: &Bar| format!("{:55} {:74} {:14} {}\n", b.what, b.found, b.bar, verdict(b));
     bars.iter().map(line).collect()
 }
