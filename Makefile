@@ -6,6 +6,7 @@
 #   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
 #   make stack          stack bytes of a query              
 #   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
+#   make bench-dq OUT=dir [QUICK=1]      d_Q in up to six dimensions: table, exponents, pictures, bars
 #
 # Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
 # is possible, cbindgen by cargo.
@@ -25,7 +26,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
       else echo "please install: $(1)" >&2; exit 1; fi
 
-.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare compiler clean
+.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare bench-dq compiler clean
 all: lib
 
 compiler:
@@ -108,6 +109,11 @@ compare: lib
 	@$(out)/compare $(OUT) $(CASES)
 	@python3 ffi-tests/compare_table.py $(CHECK) $(OUT)/compare.csv $(CASES)
 peer_includes = -isystem /usr/include/eigen3
+
+bench-dq: OUT = out/dq
+bench-dq:
+	@echo "measuring d_Q; results go to $(OUT)"
+	@$(CARGO) bench --quiet --locked --features std --bench dq -- $(if $(QUICK),--quick) $(OUT)
 
 test:
 	@scripts/test.sh

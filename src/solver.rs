@@ -85,7 +85,21 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
     }
 
-    /// The same by expansion alone, for a query whose sets are fit for it: the work is bounded by the capacity.
+    /// The same by expansion of one polytope alone: the work is bounded by the capacity, whose exhaustion ends the query with outcome
+    /// [`Capacity`](crate::Outcome::Capacity). A program that calls this and not [`solve`](Self::solve) does without the other plans'
+    /// code.
+    pub fn solve_by_expansion(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+    ) -> Answer<T, N> {
+        if q.ball_radius().is_none() && a.radius() > T::zero() {
+            return self.expand_only(Query::new(&Inflated(a), q, T::zero(), *options));
+        }
+        self.expand_only(Query::new(a, q, a.radius(), *options))
+    }
+
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
         self.polytope.reset();
         match checked.and_then(|()| query.normalize()).and_then(|()| self.open(&mut query)) {

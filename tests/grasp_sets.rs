@@ -141,7 +141,7 @@ fn mirrors_of_two_fingers() {
     let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
     let (uneven, even) = (primitives(&[at(-0.75), at(1.3)], &frame), primitives(&[at(-1.0), at(1.0)], &frame));
     for norm in [Norm::L1, Norm::LInf] {
-        let mirrored = |p: &[Primitive<f64>], signs: [f64; 6]| WrenchSet::new(p, norm).mirrored(&Vector::from(signs));
+        let mirrored = |p: &[Primitive<f64>], signs: [f64; 6]| WrenchSet::new(p, norm).is_mirrored(&Vector::from(signs));
         // Forces mirrored in a plane, moments accordingly.
         for (x, y, z, same) in [
             (1.0, 1.0, 1.0, true),
@@ -164,8 +164,8 @@ fn mirrors_of_two_fingers() {
     // Three times on one side and once on the other is symmetric for L1 only.
     let lopsided = primitives(&[at(1.0), at(-1.0), at(1.0), at(1.0)], &frame);
     let signs = Vector::from([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]);
-    assert!(WrenchSet::new(&lopsided, Norm::L1).mirrored(&signs));
-    assert!(!WrenchSet::new(&lopsided, Norm::LInf).mirrored(&signs));
+    assert!(WrenchSet::new(&lopsided, Norm::L1).is_mirrored(&signs));
+    assert!(!WrenchSet::new(&lopsided, Norm::LInf).is_mirrored(&signs));
 }
 
 /// Table I of the paper, rows (a1), (a3), (a4) and (a5): the solver's brackets around the closed forms.
@@ -214,10 +214,10 @@ fn mirrored_sets_have_mirrored_values() {
         let [x, y, z] = flip;
         for norm in [Norm::L1, Norm::LInf] {
             let set = WrenchSet::new(&primitives, norm);
-            assert!(set.mirrored(&Vector::from([x, y, z, y * z, x * z, x * y])));
+            assert!(set.is_mirrored(&Vector::from([x, y, z, y * z, x * z, x * y])));
             for bits in 0..64 {
                 let signs = Vector::from(core::array::from_fn(|i| if bits >> i & 1 == 1 { -1.0 } else { 1.0 }));
-                if set.mirrored(&signs) {
+                if set.is_mirrored(&signs) {
                     found += 1;
                     let u = Vector::from(dice.direction::<6>());
                     assert!((set.value(&u) - set.value(&u.component_mul(&signs))).abs() <= 1e-13 * set.extent());

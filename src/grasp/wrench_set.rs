@@ -97,7 +97,7 @@ impl<'a, T: Real> WrenchSet<'a, T> {
     /// True when every primitive, mirrored, is in the list: the same center and, up to order and sign, the same columns
     /// of the disc, by exact comparison of floating-point numbers; for LInf as often as the primitive itself. False
     /// means that it is not known. m^2 comparisons of up to 24 numbers.
-    pub fn mirrored(&self, signs: &Vector<T, 6>) -> bool {
+    pub fn is_mirrored(&self, signs: &Vector<T, 6>) -> bool {
         if !signs.iter().all(|s| s.abs() == T::one()) {
             return false;
         }
@@ -124,6 +124,9 @@ impl<'a, T: Real> WrenchSet<'a, T> {
 }
 
 impl<T: Real> Support<T, 6> for WrenchSet<'_, T> {
+    fn mirrored(&self, signs: u8) -> bool {
+        self.is_mirrored(&Vector::from_fn(|i, _| if signs >> i & 1 == 1 { -T::one() } else { T::one() }))
+    }
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
         let u = near_unit(u);
         let zero = T::zero();

@@ -129,7 +129,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let skipped = query.mirrors();
         let mut gap = first_gap(query);
         loop {
-            let is_last = query.level(gap, 0) >= query.level(T::zero(), 0);
+            let is_last = query.level(gap, T::zero()) >= query.level(T::zero(), T::zero());
             let pass = match self.pass(query, gap, skipped)? {
                 Ok(pass) => pass,
                 Err(stop) => {
@@ -190,7 +190,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// Algorithm 1 in one cone, until no facet is below the level of this gap.
     fn expand_cone(&mut self, query: &mut Query<'_, T, N>, cone: &Cone<N>, gap: T) -> Result<End<T>, Failure> {
-        let margins = 3 + cone.depth();
+        // Margins of the lower bound, and one for the upper.
+        let margins = 4 + cone.depth();
+        if let Some(stop) = query.exhausted() {
+            return Ok(End::Stopped(stop));
+        }
         let center = cone.direction(&Vector::repeat(T::one()));
         let (apex, height) = query.support(&(center * (T::one() / norm(&center))))?;
         if query.is_outside(height) {
@@ -202,9 +206,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         // The lowest key of a facet that is not queued.
         let mut final_key = T::HUGE;
-        self.rate_cone(query, cone, query.level(gap, margins), &mut final_key)?;
+        self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?;
         while let Some((key, index)) = self.polytope.pop_lowest() {
-            if key >= query.level(gap, margins) {
+            if key >= query.level(gap, query.reserve(margins)) {
                 return Ok(End::Done(final_key.at_most(key)));
             }
             if let Some(stop) = query.exhausted() {
@@ -225,10 +229,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 continue;
             }
             match self.polytope.insert(index, within(vertex), tolerance) {
-                Some(Insertion::Done) => self.rate_cone(query, cone, query.level(gap, margins), &mut final_key)?,
+                Some(Insertion::Done) => self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?,
                 Some(Insertion::Rejected) => final_key = final_key.at_most(key),
                 Some(Insertion::Full) => {
-                    let (i, j) = self.halves(cone, query.level(gap, margins));
+                    let (i, j) = self.halves(cone, query.level(gap, query.reserve(margins)));
                     return Ok(End::Full(i, j));
                 }
                 None => return Ok(End::Stopped(Stop::Rounding)),
@@ -318,7 +322,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
 /// The gap asked for, times a power that makes it a first one.
 fn first_gap<T: Real, const N: usize>(query: &Query<'_, T, N>) -> T {
-    let last = T::one() - query.level(T::zero(), 0) / query.ratio();
+    let last = T::one() - query.level(T::zero(), T::zero()) / query.ratio();
     let mut gap = last.at_least(T::ROUNDOFF);
     while gap < T::of(FIRST_GAP) {
         gap *= T::of(NARROWING);

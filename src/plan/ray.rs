@@ -69,18 +69,30 @@ impl<T: Real, const N: usize> Ray<T, N> {
     /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
     pub fn enter(&mut self, vertex: &Vertex<T, N>) -> bool {
         let shares = self.inverse * vertex.point;
+        // The first weight to vanish decides (Harris' ratio test: of those that vanish together, up to rounding, the one with
+        // the largest pivot).
+        let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
+        let blur = sum * (T::count(16) * T::ROUNDOFF);
         let largest = shares.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
         let threshold = largest * (T::count(16 * N) * T::ROUNDOFF);
-        let mut leaving: Option<(usize, T)> = None;
+        let mut first = T::HUGE;
         for i in 0..N {
             if shares[i] > threshold {
-                let step = self.weights[i] / shares[i];
-                if leaving.is_none_or(|(j, least)| step < least || step == least && shares[i] > shares[j.min(N - 1)]) {
-                    leaving = Some((i, step));
-                }
+                first = first.at_most((self.weights[i] + blur) / shares[i]);
+            }
+        }
+        let mut leaving: Option<(usize, T)> = None;
+        let mut pivot = threshold;
+        for i in 0..N {
+            if shares[i] > pivot && self.weights[i] <= first * shares[i] {
+                pivot = shares[i];
+                leaving = Some((i, self.weights[i] / pivot));
             }
         }
         let Some((out, step)) = leaving else { return false };
+        if pivot < largest * T::ROUNDOFF.root() {
+            return false; // The new corner is one of the old ones, as far as arithmetic can tell.
+        }
         for i in 0..N {
             if i == out {
                 let pivot = T::one() / shares[i];

@@ -16,6 +16,7 @@
 //!   r - m, and the convex combination of λv + mB and that ball puts λ (1 - m / r) v in A.
 
 use crate::answer::Stop;
+use crate::bounds::Bracket;
 use crate::query::Query;
 use super::ray::Ray;
 use crate::scalar::{Real, Vector};
@@ -38,34 +39,51 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
     if count == 0 {
         return Ok(None);
     }
-    let inner = query.inner_radius();
+    let mut reserve = T::zero();
+    let mut found = None;
+    // The second time with room for what the lower bound loses, if that was too much.
+    for _ in 0..2 {
+        let Some((rays, radius)) = shoot_all(query, count, reserve)? else { return Ok(None) };
+        let margin = query.margin() + rays.error;
+        let loss = match (query.inner_radius(), radius) {
+            (inner, _) if inner > T::zero() => margin / inner,
+            (_, Some(radius)) if radius > margin => rays.least * (margin / radius),
+            _ => return Ok(None),
+        };
+        let Some(witness) = rays.witness else { return Ok(None) };
+        let lower = rays.least - loss;
+        let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
+        let verdict = query.verdict(&Bracket { lower, upper: query.upper() });
+        found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness });
+        if verdict.is_some() {
+            break;
+        }
+        reserve = loss * T::of(1.25);
+    }
+    Ok(found)
+}
+
+/// All rays, each until it cannot be the one that counts; and, where Q says nothing about some directions, the radius of a ball in A.
+#[allow(clippy::type_complexity)]
+fn shoot_all<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    count: usize,
+    reserve: T,
+) -> Result<Option<(Rays<T, N>, Option<T>)>, Failure> {
     let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
     let mut last: Option<Ray<T, N>> = None;
     for index in 0..count {
         let target = query.ray(index);
-        let aimed = last.take().and_then(|ray| ray.aimed(&target));
-        let mut ray = aimed.unwrap_or_else(|| Ray::new(&target, query.speck()));
-        match shoot(query, &mut ray, T::zero(), |query| query.level(T::zero(), 8))? {
-            Shot::Hit => {}
-            Shot::Stopped(_) => return Ok(None),
-        }
-        if !rays.take(query, &mut ray) {
+        let (ray, shot) = shoot(query, &target, last.take(), T::zero(), |query| {
+            query.level(T::zero(), reserve + query.reserve(4))
+        })?;
+        if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
             return Ok(None);
         }
         last = Some(ray);
     }
-    let margin = query.margin() + rays.error;
-    let lower = if inner > T::zero() {
-        rays.least - margin / inner
-    } else {
-        match ball_inside(query)? {
-            Some(radius) if radius > margin => rays.least - rays.least * (margin / radius),
-            _ => return Ok(None),
-        }
-    };
-    let Some(witness) = rays.witness else { return Ok(None) };
-    let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
-    Ok(Some(Crossings { stop: Stop::Met, lower, witness }))
+    let radius = if query.inner_radius() > T::zero() { None } else { ball_inside(query)? };
+    Ok(Some((rays, radius)))
 }
 
 /// The least crossing of several rays.
@@ -77,16 +95,8 @@ struct Rays<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Rays<T, N> {
-    fn take(&mut self, query: &Query<'_, T, N>, ray: &mut Ray<T, N>) -> bool {
-        let Some(mut reach) = ray.reach() else { return false };
-        if reach.1 > query.resolution() {
-            ray.polish();
-            match ray.reach() {
-                Some(better) => reach = better,
-                None => return false,
-            }
-        }
-        let (t, miss) = reach;
+    fn take(&mut self, ray: &Ray<T, N>) -> bool {
+        let Some((t, miss)) = ray.reach() else { return false };
         self.error = self.error.at_least(miss);
         if t < self.least {
             self.least = t;
@@ -101,22 +111,22 @@ impl<T: Real, const N: usize> Rays<T, N> {
 fn ball_inside<T: Real, const N: usize>(query: &mut Query<'_, T, N>) -> Result<Option<T>, Failure> {
     let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
     let root = T::count(N).root();
+    // The facet opposite e_k of the simplex { e_i, -(1 .. 1) / sqrt(N) } has the normal with 1 in all places but k.
+    let tilt = root + T::count(N - 1);
+    let inradius = T::one() / (T::count(N - 1) + tilt * tilt).root();
+    // So large that the margin costs a tenth of the tolerance, and never small.
+    let costly = query.margin() * query.ratio() / (query.slack() * T::of(0.1)) / inradius;
+    let enough = (query.reach() * T::of(0.02)).at_least(costly).at_most(query.reach());
     for index in 0..=N {
         let target = Vector::<T, N>::from_fn(|i, _| match index {
             _ if index == N => -T::one() / root,
             _ if i == index => T::one(),
             _ => T::zero(),
         });
-        let mut ray = Ray::new(&target, query.speck());
-        // Anything that is not small will do.
-        let enough = query.reach() * T::of(0.05);
-        match shoot(query, &mut ray, T::of(0.1), |_| enough)? {
-            Shot::Hit if rays.take(query, &mut ray) => {}
-            _ => return Ok(None),
+        let (ray, shot) = shoot(query, &target, None, T::of(0.1), |_| enough)?;
+        if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
+            return Ok(None);
         }
     }
-    // The facet opposite e_k of the simplex { e_i, -(1 .. 1) / sqrt(N) } has the normal with 1 in all places but k.
-    let tilt = root + T::count(N - 1);
-    let inradius = T::one() / (T::count(N - 1) + tilt * tilt).root();
     Ok(Some(rays.least * inradius - rays.error))
 }

@@ -9,6 +9,10 @@ use crate::support::Failure;
 /// More steps than any ray takes: rounding ends them earlier.
 const STEPS: usize = 512;
 
+/// Sizes of the artificial corners, as shares of A's: the larger, the better the arithmetic; the smaller, the nearer to the origin
+/// may A end.
+const SPECKS: [f64; 3] = [0.03125, 1e-3, 1e-5];
+
 /// Where a shot ended.
 pub(crate) enum Shot {
     /// The crossing is known as well as asked for, or as arithmetic allows.
@@ -16,18 +20,55 @@ pub(crate) enum Shot {
     Stopped(Stop),
 }
 
-/// Shoots until the crossing is beyond `level`, or known to a share `accuracy` of its distance.
+/// A ray along `target`, shot until the crossing is beyond `level`, or known to a share `accuracy` of its distance; from the simplex that
+/// another ray pierced, if this one does as well.
 pub(crate) fn shoot<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    target: &Vector<T, N>,
+    near: Option<Ray<T, N>>,
+    accuracy: T,
+    level: impl Fn(&Query<'_, T, N>) -> T,
+) -> Result<(Ray<T, N>, Shot), Failure> {
+    let mut ray = match near.and_then(|ray| ray.aimed(target)) {
+        Some(ray) => ray,
+        None => Ray::new(target, query.size() * T::of(SPECKS[0])),
+    };
+    let mut shot = follow(query, &mut ray, accuracy, &level)?;
+    for share in SPECKS.iter().skip(1) {
+        if matches!(shot, Shot::Stopped(_)) || ray.reach().is_some() {
+            break;
+        }
+        ray = Ray::new(target, query.size() * T::of(*share));
+        shot = follow(query, &mut ray, accuracy, &level)?;
+    }
+    Ok((ray, shot))
+}
+
+fn follow<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     ray: &mut Ray<T, N>,
     accuracy: T,
-    level: impl Fn(&Query<'_, T, N>) -> T,
+    level: &impl Fn(&Query<'_, T, N>) -> T,
 ) -> Result<Shot, Failure> {
+    let mut polished = false;
     for _ in 0..STEPS {
-        if let Some((t, _)) = ray.reach()
+        let reach = ray.reach();
+        // Whether the inverse still is one is checked before anything is concluded from it.
+        let settle = |ray: &mut Ray<T, N>, query: &Query<'_, T, N>, polished: &mut bool| {
+            let fine = *polished || ray.reach().is_none_or(|(_, miss)| miss <= query.resolution());
+            if !fine {
+                ray.polish();
+                *polished = true;
+            }
+            fine
+        };
+        if let Some((t, _)) = reach
             && t >= level(query)
         {
-            break;
+            if settle(ray, query, &mut polished) {
+                break;
+            }
+            continue;
         }
         let plane = ray.plane();
         let length = norm(&plane);
@@ -42,7 +83,10 @@ pub(crate) fn shoot<T: Real, const N: usize>(
         let offset = T::one() / length;
         let beyond = height - offset;
         if beyond <= query.resolution().at_least(accuracy * offset) {
-            break;
+            if settle(ray, query, &mut polished) {
+                break;
+            }
+            continue;
         }
         if let Some(stop) = query.exhausted() {
             return Ok(Shot::Stopped(stop));
@@ -50,6 +94,7 @@ pub(crate) fn shoot<T: Real, const N: usize>(
         if !ray.enter(&vertex) {
             break;
         }
+        polished = false;
     }
     Ok(Shot::Hit)
 }
@@ -68,9 +113,8 @@ pub(crate) fn descend<T: Real, const N: usize>(
     for _ in 0..STEPS {
         let Some(target) = query.mapping(&direction) else { return Ok(None) };
         let before = query.ratio();
-        let aimed = last.take().and_then(|ray| ray.aimed(&target));
-        let mut ray = aimed.unwrap_or_else(|| Ray::new(&target, query.speck()));
-        if let Shot::Stopped(stop) = shoot(query, &mut ray, T::of(1e-6), |_| T::HUGE)? {
+        let (ray, shot) = shoot(query, &target, last.take(), T::of(1e-6), |_| T::HUGE)?;
+        if let Shot::Stopped(stop) = shot {
             return Ok(Some(stop));
         }
         let plane = ray.plane();

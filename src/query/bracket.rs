@@ -41,12 +41,18 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         (inradius > margin).then(|| least * (T::one() - T::count(16) * T::ROUNDOFF))
     }
 
-    /// A lower end that would end the query now, with room for so many margins; at least a share `gap` below the upper end.
-    pub fn level(&self, gap: T, margins: usize) -> T {
-        let reserve = T::count(margins + 2) * self.margin() * self.per_ball;
+    /// A lower end that would end the query now, `reserve` included; at least a share `gap` below the upper end.
+    pub fn level(&self, gap: T, reserve: T) -> T {
         let met = self.tolerance(T::of(0.99)).below(self.ratio) + reserve;
         let enough = self.options.threshold.map_or(met, |threshold| met.at_most(threshold + reserve));
         enough.at_most(self.ratio - self.ratio * gap)
+    }
+
+    /// So many margins, as a difference of d. (A Q of no known inner radius: as if it were one of its own size.)
+    pub fn reserve(&self, margins: usize) -> T {
+        let inner = self.inner_radius();
+        let margin = T::count(margins) * self.margin();
+        if inner > T::zero() { margin / inner } else { self.ratio * (margin / self.reach.at_least(T::TINY)) }
     }
 
     /// Is d certainly below the threshold?
@@ -83,6 +89,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     pub(super) fn tolerance(&self, share: T) -> Tolerance<T> {
         Tolerance { absolute: self.options.absolute * share, relative: self.options.relative * share }
+    }
+
+    /// The width that the tolerance allows a bracket at the best upper bound.
+    pub fn slack(&self) -> T {
+        self.tolerance(T::one()).above(self.ratio) - self.ratio
     }
 
     /// Is this bracket as narrow as asked for?

@@ -20,8 +20,8 @@ pub struct Options<T, const N: usize> {
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most points to add; 0: no limit. Default 50,000: less than a second in six dimensions. What a query needs grows with a power of
-    /// 1 / tolerance, (dimension - 1) / 2 for a smooth A.
+    /// Most points to add; 0, the default: 50,000, less than a second in six dimensions. (What a query needs grows with a power
+    /// of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth.)
     pub max_iterations: u32,
     /// The direction to look in first (any length, not zero): where the answer was last time.
     pub guess: Option<Vector<T, N>>,
@@ -33,11 +33,14 @@ impl<T: Real, const N: usize> Default for Options<T, N> {
             absolute: T::zero(),
             relative: T::RELATIVE_TOLERANCE,
             threshold: None,
-            max_iterations: 50_000,
+            max_iterations: 0,
             guess: None,
         }
     }
 }
+
+/// Points added when the caller sets no limit.
+const MAX_ITERATIONS: u32 = 50_000;
 
 /// Directions farther apart than this cosine (8 degrees) are not two guesses at the same minimiser.
 const RIVAL_COSINE: f64 = 0.99;
@@ -277,9 +280,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.q.inner_radius()
     }
 
-    /// A length that is small beside A, and large beside its rounding.
-    pub fn speck(&self) -> T {
-        self.reach().at_least(T::one()) * T::ROUNDOFF.root()
+    /// A's size, as far as it is known.
+    pub fn size(&self) -> T {
+        if self.extent > T::zero() { self.extent * self.scale } else { self.reach }
     }
 
     /// Which changes of sign leave both A and Q as they are: bit s for the coordinates named by the bits of s.
@@ -344,7 +347,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Counts an iteration; tells why there must be none when a limit is reached.
     pub fn exhausted(&mut self) -> Option<Stop> {
-        if self.options.max_iterations != 0 && self.iterations >= self.options.max_iterations {
+        let limit = if self.options.max_iterations == 0 { MAX_ITERATIONS } else { self.options.max_iterations };
+        if self.iterations >= limit {
             return Some(Stop::Iterations);
         }
         if self.interrupt.is_some_and(|interrupt| interrupt()) {

@@ -72,7 +72,7 @@ impl<T: Real> From<&Depth<T>> for Seen {
 
 /// The default, but for what a search by cones may take of the test's time.
 pub fn brisk<T: Real, const N: usize>() -> Options<T, N> {
-    Options { max_iterations: 500, ..Options::default() }
+    Options { max_iterations: 2000, ..Options::default() }
 }
 
 /// What every answer promises whatever it is about; the first broken promise as text. `vertices` and `facets` are the
@@ -112,7 +112,7 @@ pub fn broken_promise<T: Real, const N: usize>(
             Outcome::Below => {
                 claim(options.threshold.is_some_and(|t| s.upper < t.to_f64()), "Below, but upper >= threshold")
             }
-            Outcome::Iterations => claim(limit != 0, "Iterations without a limit"),
+            Outcome::Iterations => claim(s.iterations >= limit, "Iterations, but below the limit"),
             Outcome::Interrupted => None,
             Outcome::Touching => claim(s.lower <= 0.0 && s.upper >= 0.0, "Touching, but the bracket misses 0"),
             Outcome::Precision | Outcome::Capacity => claim(s.upper >= 0.0, "apart, but not Separated"),
