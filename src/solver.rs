@@ -67,13 +67,21 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if let Err(failure) = checked.and_then(|()| query.normalize()) {
             return self.give_up(&mut query, failure);
         }
-        match solve_rays(&mut query) {
-            Ok(Some(rays)) => {
-                query.plan = Plan::Rays;
-                return query.answer(rays.stop, rays.lower, rays.witness);
-            }
-            Ok(None) => {}
+        let rays = match solve_rays(&mut query) {
+            Ok(rays) => rays,
             Err(failure) => return self.give_up(&mut query, failure),
+        };
+        if let Some(rays) = rays {
+            // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
+            let open = matches!(rays.stop, Stop::Rounding | Stop::Iterations | Stop::Interrupted);
+            if open
+                && let Ok(Opening::Expanded(expanded, floor)) = self.open(&mut query)
+                && self.lower(&query, expanded.key).is_some_and(|lower| lower > rays.lower)
+            {
+                return self.conclude(&mut query, expanded, floor);
+            }
+            query.plan = Plan::Rays;
+            return query.answer(rays.stop, rays.lower, rays.witness);
         }
         match self.open(&mut query) {
             Ok(Opening::Decided(answer)) => answer,

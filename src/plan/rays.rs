@@ -24,6 +24,10 @@ use super::shoot::{Shot, shoot};
 use crate::simplex::Simplex;
 use crate::support::Failure;
 
+/// A query that may be cut short begins with a pass to this share of d, for an early lower bound. The last pass is one with room for what the
+/// lower bound loses to rounding, where that was too much.
+const FIRST_GAP: f64 = 0.5;
+
 /// What the rays have shown.
 pub(crate) struct Crossings<T, const N: usize> {
     pub stop: Stop,
@@ -40,17 +44,24 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
         return Ok(None);
     }
     let mut reserve = T::zero();
-    let mut found = None;
-    // The second time with room for what the lower bound loses, if that was too much.
-    for _ in 0..2 {
-        let Some((rays, radius)) = shoot_all(query, count, reserve)? else { return Ok(None) };
+    let mut found: Option<Crossings<T, N>> = None;
+    for gap in [T::of(FIRST_GAP), T::zero(), T::zero()] {
+        if gap > T::zero() && !query.may_be_cut_short() {
+            continue;
+        }
+        let Some((rays, radius)) = shoot_all(query, count, gap, reserve)? else {
+            if let Some(found) = &mut found {
+                found.stop = query.exhausted().unwrap_or(Stop::Rounding);
+            }
+            return Ok(found);
+        };
         let margin = query.margin() + rays.error;
         let loss = match (query.inner_radius(), radius) {
             (inner, _) if inner > T::zero() => margin / inner,
             (_, Some(radius)) if radius > margin => rays.least * (margin / radius),
-            _ => return Ok(None),
+            _ => return Ok(found),
         };
-        let Some(witness) = rays.witness else { return Ok(None) };
+        let Some(witness) = rays.witness else { return Ok(found) };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
         let verdict = query.verdict(&Bracket { lower, upper: query.upper() });
@@ -68,6 +79,7 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
 fn shoot_all<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     count: usize,
+    gap: T,
     reserve: T,
 ) -> Result<Option<(Rays<T, N>, Option<T>)>, Failure> {
     let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
@@ -75,7 +87,7 @@ fn shoot_all<T: Real, const N: usize>(
     for index in 0..count {
         let target = query.ray(index);
         let (ray, shot) = shoot(query, &target, last.take(), T::zero(), |query| {
-            query.level(T::zero(), reserve + query.reserve(4))
+            query.level(gap, reserve + query.reserve(4))
         })?;
         if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
             return Ok(None);

@@ -11,7 +11,7 @@ const STEPS: usize = 512;
 
 /// Sizes of the artificial corners, as shares of A's: the larger, the better the arithmetic; the smaller, the nearer to the origin
 /// may A end.
-const SPECKS: [f64; 3] = [0.03125, 1e-3, 1e-5];
+const SPECKS: [f64; 2] = [1e-3, 1e-6];
 
 /// Where a shot ended.
 pub(crate) enum Shot {

@@ -345,6 +345,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         height + self.margin() < T::zero()
     }
 
+    /// Has the caller set a limit?
+    pub fn may_be_cut_short(&self) -> bool {
+        self.options.max_iterations != 0 || self.interrupt.is_some()
+    }
+
     /// Counts an iteration; tells why there must be none when a limit is reached.
     pub fn exhausted(&mut self) -> Option<Stop> {
         let limit = if self.options.max_iterations == 0 { MAX_ITERATIONS } else { self.options.max_iterations };
