@@ -40,6 +40,8 @@ pub enum Plan {
     Meridian,
     /// Polytopal Q: one ray per vertex of Q, and no polytope.
     Rays,
+    /// The bracket of the call before, moved ([`Tracker`](crate::Tracker)): nothing had to be expanded.
+    Warm,
     /// Expansion of one polytope.
     Expansion,
     /// The polytope outgrew the memory: expansion cone by cone.

@@ -107,6 +107,7 @@ pub mod simplex;
 pub mod solver;
 mod start;
 pub mod support;
+pub mod tracker;
 pub mod workspace;
 
 pub use answer::{Answer, Outcome, Plan};
@@ -115,6 +116,7 @@ pub use query::Options;
 pub use scalar::{Real, Vector};
 pub use simplex::Vertex;
 pub use solver::Solver;
+pub use tracker::Tracker;
 pub use workspace::Workspace;
 
 /// Failure code: a callback returned a value that is not finite.

@@ -67,29 +67,34 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if let Err(failure) = checked.and_then(|()| query.normalize()) {
             return self.give_up(&mut query, failure);
         }
-        let rays = match solve_rays(&mut query) {
+        self.decide(&mut query)
+    }
+
+    /// The plan for a query that has been made ready.
+    pub(crate) fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
+        let rays = match solve_rays(query) {
             Ok(rays) => rays,
-            Err(failure) => return self.give_up(&mut query, failure),
+            Err(failure) => return self.give_up(query, failure),
         };
         if let Some(rays) = rays {
             // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
             let open = matches!(rays.stop, Stop::Rounding | Stop::Iterations | Stop::Interrupted);
             if open
-                && let Ok(Opening::Expanded(expanded, floor)) = self.open(&mut query)
-                && self.lower(&query, expanded.key).is_some_and(|lower| lower > rays.lower)
+                && let Ok(Opening::Expanded(expanded, floor)) = self.open(query)
+                && self.lower(query, expanded.key).is_some_and(|lower| lower > rays.lower)
             {
-                return self.conclude(&mut query, expanded, floor);
+                return self.conclude(query, expanded, floor);
             }
             query.plan = Plan::Rays;
             return query.answer(rays.stop, rays.lower, rays.witness);
         }
-        match self.open(&mut query) {
+        match self.open(query) {
             Ok(Opening::Decided(answer)) => answer,
             Ok(Opening::Expanded(expanded, floor)) if expanded.stop == Stop::Capacity => {
-                self.solve_cones(&mut query, expanded, floor)
+                self.solve_cones(query, expanded, floor)
             }
-            Ok(Opening::Expanded(expanded, floor)) => self.conclude(&mut query, expanded, floor),
-            Err(failure) => self.give_up(&mut query, failure),
+            Ok(Opening::Expanded(expanded, floor)) => self.conclude(query, expanded, floor),
+            Err(failure) => self.give_up(query, failure),
         }
     }
 
@@ -247,7 +252,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
     }
 
-    fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
+    pub(crate) fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
         self.lower_by_vertices(query, Stop::Failed(failure.0), None)
     }
 }

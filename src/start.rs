@@ -35,6 +35,22 @@ impl<T: Real, const N: usize> Start<T, N> {
         self.edges.count
     }
 
+    /// Distance of the origin from the affine hull found so far.
+    pub fn height(&self) -> T {
+        self.base.map_or(T::HUGE, |base| norm(&self.edges.complement(&self.edges.complement(&base))))
+    }
+
+    /// An orthonormal basis of the affine hull's directions; the rest is zero.
+    pub fn axes(&self) -> [Vector<T, N>; N] {
+        let mut axes = [Vector::zeros(); N];
+        for i in 0..N {
+            if i < self.edges.count {
+                axes[i] = unit(&self.edges.q[i]);
+            }
+        }
+        axes
+    }
+
     /// The next direction: from the affine hull of the points so far towards the origin, so that the simplex
     /// grows around it; where the hull contains the origin, the coordinate axis that sticks out most.
     pub fn direction(&self) -> Vector<T, N> {

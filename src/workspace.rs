@@ -119,6 +119,28 @@ pub(crate) unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &L
     }
 }
 
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// A solver of a lower dimension in the same memory, with the same capacities; `None` when K is not lower.
+    pub(crate) fn in_dimension<const K: usize>(&mut self) -> Option<Solver<'_, T, K>> {
+        use core::slice::from_raw_parts_mut;
+        if K >= N {
+            return None;
+        }
+        const {
+            assert!(K >= N || size_of::<Facet<T, K>>() <= size_of::<Facet<T, N>>());
+            assert!(K >= N || size_of::<Vertex<T, K>>() <= size_of::<Vertex<T, N>>());
+        };
+        let (vertices, facets, queue) = self.polytope.memory();
+        // SAFETY: the same number of smaller elements, of the same alignment (that of T), made of numbers only: any initialised memory is
+        // one, then and when it is read in the higher dimension again.
+        unsafe {
+            let vertices = from_raw_parts_mut(vertices.as_mut_ptr().cast(), vertices.len());
+            let facets = from_raw_parts_mut(facets.as_mut_ptr().cast(), facets.len());
+            Some(Solver { polytope: Polytope::new(vertices, facets, queue) })
+        }
+    }
+}
+
 /// A solver's memory as a value: `V` vertices and `F` facets, for a `static` or the stack.
 ///
 /// ```

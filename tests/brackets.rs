@@ -243,8 +243,7 @@ fn tolerances<T: Real, const N: usize>() {
                     4 => Some(vector(std::array::from_fn(|i| if i == N - 1 { -1.0 } else { 0.0 }))),
                     _ => Some(vector(dice.direction::<N>())),
                 };
-                let options =
-                    Options { absolute: T::of(absolute), relative: T::of(relative), guess, ..brisk() };
+                let options = Options { absolute: T::of(absolute), relative: T::of(relative), guess, ..brisk() };
                 let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
                 holds(&k, &s, &options, size);
             }

@@ -141,7 +141,8 @@ fn mirrors_of_two_fingers() {
     let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
     let (uneven, even) = (primitives(&[at(-0.75), at(1.3)], &frame), primitives(&[at(-1.0), at(1.0)], &frame));
     for norm in [Norm::L1, Norm::LInf] {
-        let mirrored = |p: &[Primitive<f64>], signs: [f64; 6]| WrenchSet::new(p, norm).is_mirrored(&Vector::from(signs));
+        let mirrored =
+            |p: &[Primitive<f64>], signs: [f64; 6]| WrenchSet::new(p, norm).is_mirrored(&Vector::from(signs));
         // Forces mirrored in a plane, moments accordingly.
         for (x, y, z, same) in [
             (1.0, 1.0, 1.0, true),

@@ -146,8 +146,7 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
     let (sa, sb) = (common::shape::<f32>(&a.shape, &[]), common::shape::<f32>(&b.shape, &[]));
     for limit in [0, 5, 33] {
         for (vertices, facets) in [(6, 6), (64, 128)] {
-            let options =
-                Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..brisk() };
+            let options = Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..brisk() };
             let mut memory = Memory::new::<f32, 3>(vertices, facets);
             let r = memory.solver::<f32, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
             assert_eq!(broken_promise(&Seen::from(&r), &options, vertices, facets), None, "{r:?}");

@@ -156,12 +156,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     /// Searches all cones, those that hold the best direction first; `skipped` tells which orthants are images of others.
-    fn pass(
-        &mut self,
-        query: &mut Query<'_, T, N>,
-        gap: T,
-        mirrors: u64,
-    ) -> Result<Result<Pass<T, N>, Stop>, Failure> {
+    fn pass(&mut self, query: &mut Query<'_, T, N>, gap: T, mirrors: u64) -> Result<Result<Pass<T, N>, Stop>, Failure> {
         let mut pass = Pass { lower: T::HUGE, witness: None, cones: 0, splits: 0 };
         let first = Cone::<N>::orthant_of(&query.direction);
         for orthant in (0..Cone::<N>::ORTHANTS).filter(|&o| (0..o).all(|other| mirrors >> (o ^ other) & 1 == 0)) {
@@ -229,7 +224,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 continue;
             }
             match self.polytope.insert(index, within(vertex), tolerance) {
-                Some(Insertion::Done) => self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?,
+                Some(Insertion::Done) => {
+                    self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?
+                }
                 Some(Insertion::Rejected) => final_key = final_key.at_most(key),
                 Some(Insertion::Full) => {
                     let (i, j) = self.halves(cone, query.level(gap, query.reserve(margins)));

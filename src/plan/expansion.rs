@@ -106,12 +106,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             Some(radius) => {
                 // Back from the key to the offset, rounded down: four roundings there and back.
                 let whole = key * radius;
-                query.lower_from_offset(whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF), query.margin())
+                query.lower_from_offset(
+                    whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF),
+                    query.margin(),
+                )
             }
             None => {
                 let facets = self.polytope.facets().map(|f| (f.offset, f.key));
                 query.lower_from_facets(facets, query.margin())
-            },
+            }
         }
     }
 

@@ -1,9 +1,10 @@
 //! The plans of a query: what it needs is done, and nothing else.
 //!
 //! ```text
-//!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
-//!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
-//!      ray                        the simplex that a ray pierces
+//!  span                             a flat A, in its own subspace
+//!    rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
+//!      shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
+//!        ray                        the simplex that a ray pierces
 //! ```
 
 mod cone;
@@ -11,4 +12,5 @@ mod conewise;
 pub(crate) mod expansion;
 mod ray;
 pub(crate) mod rays;
-mod shoot;
+pub(crate) mod shoot;
+mod span;

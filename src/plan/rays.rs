@@ -15,12 +15,12 @@
 //!   and back along their mean show a ball of radius r in A + mB, so A contains the ball of radius
 //!   r - m, and the convex combination of λv + mB and that ball puts λ (1 - m / r) v in A.
 
+use super::ray::Ray;
+use super::shoot::{Shot, shoot};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::query::Query;
-use super::ray::Ray;
 use crate::scalar::{Real, Vector};
-use super::shoot::{Shot, shoot};
 use crate::simplex::Simplex;
 use crate::support::Failure;
 
@@ -86,9 +86,8 @@ fn shoot_all<T: Real, const N: usize>(
     let mut last: Option<Ray<T, N>> = None;
     for index in 0..count {
         let target = query.ray(index);
-        let (ray, shot) = shoot(query, &target, last.take(), T::zero(), |query| {
-            query.level(gap, reserve + query.reserve(4))
-        })?;
+        let (ray, shot) =
+            shoot(query, &target, last.take(), T::zero(), |query| query.level(gap, reserve + query.reserve(4)))?;
         if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
             return Ok(None);
         }

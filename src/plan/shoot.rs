@@ -1,8 +1,8 @@
 //! Rays shot at A by a query: for a polytopal Q they are the whole answer, for any other they find upper bounds.
 
+use super::ray::Ray;
 use crate::answer::Stop;
 use crate::query::Query;
-use super::ray::Ray;
 use crate::scalar::{Real, Vector, norm};
 use crate::support::Failure;
 

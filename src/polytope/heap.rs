@@ -32,6 +32,10 @@ impl<'a, T: Real> Heap<'a, T> {
         Heap { entries, len: 0 }
     }
 
+    pub fn memory(&mut self) -> &mut [Entry<T>] {
+        self.entries
+    }
+
     pub fn clear(&mut self) {
         self.len = 0;
     }

@@ -32,14 +32,19 @@ pub type Index = u16;
 /// No vertex, no facet.
 pub const NONE: Index = Index::MAX;
 
+/// A number, not an enumeration: any memory is a facet, so that memory can change its dimension without being written anew.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
-    Free,
-    Live,
+#[repr(transparent)]
+struct State(u8);
+
+#[allow(non_upper_case_globals)]
+impl State {
+    const Free: State = State(0);
+    const Live: State = State(1);
     /// Eliminated by the point that is being inserted.
-    Visible,
+    const Visible: State = State(2);
     /// Made by the point that is being inserted.
-    Fresh,
+    const Fresh: State = State(3);
 }
 
 /// A facet: the simplex of N vertices, its plane and its neighbours.
@@ -133,6 +138,11 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             reach_squared: T::zero(),
             reach: T::zero(),
         }
+    }
+
+    /// The memory: vertices, facets and queue.
+    pub fn memory(&mut self) -> (&mut [Vertex<T, N>], &mut [Facet<T, N>], &mut [Entry<T>]) {
+        (self.vertices, self.facets, self.heap.memory())
     }
 
     /// Forgets everything, in constant time.

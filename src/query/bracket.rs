@@ -60,16 +60,22 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         self.options.threshold.is_some_and(|threshold| self.upper() < threshold)
     }
 
+    /// The better of a lower bound and the one that was known before, unless an upper bound has disproved that.
+    pub fn floored(&self, lower: T) -> T {
+        if self.floor > T::zero() && self.floor <= self.ratio { lower.at_least(self.floor) } else { lower }
+    }
+
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
     /// without margins.
     #[inline]
     pub fn is_open(&self, key: T) -> bool {
-        let gap = Bracket { lower: key, upper: self.ratio };
+        let gap = Bracket { lower: self.floored(key), upper: self.ratio };
         self.options.threshold.is_none() && !self.tolerance(Self::sharpness()).met(&gap)
     }
 
     /// Does the bracket end the query?
     pub fn verdict(&self, bracket: &Bracket<T>) -> Option<Stop> {
+        let bracket = &Bracket { lower: self.floored(bracket.lower), upper: bracket.upper };
         if let Some(threshold) = self.options.threshold {
             if bracket.lower >= threshold {
                 return Some(Stop::Above);

@@ -39,6 +39,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
                 Stop::Failed(code)
             }
         };
+        let lower = self.floored(lower);
         let upper = self.upper();
         let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
         let met = known && self.is_met(&Bracket { lower, upper });

@@ -87,6 +87,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     pub dimension: usize,
     /// How the query is being answered.
     pub plan: Plan,
+    /// A lower bound of d that holds anyway; 0: none that says anything.
+    floor: T,
     /// Says when to stop.
     pub interrupt: Option<&'q dyn Fn() -> bool>,
 }
@@ -131,6 +133,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             support_calls: 0,
             dimension: N,
             plan: Plan::Expansion,
+            floor: T::zero(),
             interrupt: None,
         };
         (query, checked)
@@ -165,6 +168,18 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         }
         let value = value / self.scale;
         if value.abs() < T::TINY { value + outward * T::TINY } else { value.at_least(-T::HUGE).at_most(T::HUGE) }
+    }
+
+    /// Calls of A's support function so far.
+    pub fn support_calls(&self) -> u32 {
+        self.support_calls
+    }
+
+    /// Tells the query a lower bound of d that holds anyway, in the caller's units. (Positive ones end it earlier.)
+    pub fn know(&mut self, lower: T) {
+        if lower > T::zero() && lower < T::HUGE {
+            self.floor = lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF;
+        }
     }
 
     /// The direction to look in first.

@@ -1,0 +1,258 @@
+//! Flat sets: d_Q in the subspace that A spans.
+//!
+//! A set in a subspace R has depth 0 in the whole space, but a depth of its own in R (the active wrench set of planar fingers, paper, Section III). With an
+//! orthonormal basis B of R, the subspace is R^K with
+//!
+//! ```text
+//! h(c) = h_A(B c)      and      h_Q(B c), the support function of the projection of Q on R
+//! ```
+//!
+//! for directions c in R^K, so the same solver answers there, in the same memory.
+
+use crate::answer::{Answer, Outcome, Plan};
+use crate::qset::Gauge;
+use crate::query::{Options, Query};
+use crate::scalar::{Real, Vector, norm, unit};
+use crate::simplex::{Corner, Simplex, Vertex};
+use crate::solver::Solver;
+use crate::start::Start;
+use crate::support::{Failure, Support};
+use nalgebra::SMatrix;
+
+/// A set or a gauge seen in a subspace.
+struct Within<'a, S: ?Sized, T, const N: usize, const K: usize> {
+    inner: &'a S,
+    basis: &'a SMatrix<T, N, K>,
+}
+
+impl<S: ?Sized, T: Real, const N: usize, const K: usize> Within<'_, S, T, N, K> {
+    /// Signs of coordinates in the subspace as signs in space; `None` unless the basis is one of coordinate axes.
+    fn signs(&self, signs: u8) -> Option<u8> {
+        (0..K).try_fold(0, |bits, j| {
+            let mut axes = (0..N).filter(|&i| self.basis[(i, j)] != T::zero());
+            let axis = axes.next().filter(|_| axes.next().is_none())?;
+            Some(bits | (signs >> j & 1) << axis)
+        })
+    }
+}
+
+impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn Support<T, N> + '_, T, N, K> {
+    fn support(&self, u: &Vector<T, K>) -> Result<Vector<T, K>, Failure> {
+        Ok(self.basis.tr_mul(&self.inner.support(&(self.basis * u))?))
+    }
+    fn support_with_witness(&self, u: &Vector<T, K>) -> Result<(Vector<T, K>, Vector<T, K>), Failure> {
+        let (point, witness) = self.inner.support_with_witness(&(self.basis * u))?;
+        Ok((self.basis.tr_mul(&point), self.basis.tr_mul(&witness)))
+    }
+    fn exhaustive(&self, u: &Vector<T, K>) -> Result<Vector<T, K>, Failure> {
+        Ok(self.basis.tr_mul(&self.inner.exhaustive(&(self.basis * u))?))
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.inner.has_shortcuts()
+    }
+    fn radius(&self) -> T {
+        self.inner.radius()
+    }
+    fn extent(&self) -> T {
+        self.inner.extent() * T::of(1.01)
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
+    }
+    fn error(&self) -> T {
+        // Direction and point are off by N roundoffs each, the basis is off orthonormal by a few.
+        self.inner.error() + T::count(8 * N) * T::ROUNDOFF * (self.inner.extent() + self.inner.radius())
+    }
+}
+
+impl<T: Real, const N: usize, const K: usize> Gauge<T, K> for Within<'_, dyn Gauge<T, N> + '_, T, N, K> {
+    fn value(&self, u: &Vector<T, K>) -> Result<T, Failure> {
+        self.inner.value(&(self.basis * u))
+    }
+    fn ball_radius(&self) -> Option<T> {
+        self.inner.ball_radius()
+    }
+    fn mapping(&self, u: &Vector<T, K>) -> Option<Vector<T, K>> {
+        self.inner.mapping(&(self.basis * u)).map(|q| self.basis.tr_mul(&q))
+    }
+    fn vertex_count(&self) -> usize {
+        self.inner.vertex_count()
+    }
+    fn vertex(&self, index: usize) -> Vector<T, K> {
+        self.basis.tr_mul(&self.inner.vertex(index))
+    }
+    fn inner_radius(&self) -> T {
+        self.inner.inner_radius() * T::of(0.999)
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
+    }
+    fn error(&self) -> T {
+        // h_Q(u) is Lipschitz: Q lies in a ball of the radius h_Q(e_1) + h_Q(-e_1) + ...
+        let mut size = T::zero();
+        for i in 0..N {
+            for sign in [T::one(), -T::one()] {
+                let mut axis = Vector::<T, N>::zeros();
+                axis[i] = sign;
+                size += self.inner.value(&axis).unwrap_or(T::zero());
+            }
+        }
+        self.inner.error() + T::count(4 * N) * T::ROUNDOFF * size
+    }
+}
+
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// d_Q(A) in the linear span of A, where A contains the origin: what is flat is measured in its own subspace, with the projection
+    /// of Q on it. [`Answer::dimension`] tells its dimension; directions and points are those of the whole space. A set that spans the
+    /// whole space is solved there, one whose affine hull misses the origin as [`solve`](Solver::solve) does.
+    ///
+    /// Flat means: no wider than the rounding of A's support function (some 100 roundoffs of its size). Cost: N + 1 to 2 N + 2 more support
+    /// calls.
+    pub fn solve_in_span(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+    ) -> Answer<T, N> {
+        let Some(Span { axes, dimension, support_calls }) = span(a, q, options) else {
+            return self.solve(a, q, options);
+        };
+        let answer = match dimension {
+            1 => solve_line(a, q, &axes[0], options).unwrap_or_else(|| self.solve(a, q, options)),
+            2 if N > 2 => self.within::<2>(a, q, &axes, options),
+            3 if N > 3 => self.within::<3>(a, q, &axes, options),
+            4 if N > 4 => self.within::<4>(a, q, &axes, options),
+            5 if N > 5 => self.within::<5>(a, q, &axes, options),
+            _ => self.solve(a, q, options),
+        };
+        Answer { support_calls: answer.support_calls.saturating_add(support_calls), ..answer }
+    }
+
+    fn within<const K: usize>(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        axes: &[Vector<T, N>; N],
+        options: &Options<T, N>,
+    ) -> Answer<T, N> {
+        let basis = SMatrix::<T, N, K>::from_fn(|i, j| axes[j.min(N - 1)][i]);
+        let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve(a, q, options) };
+        let options = Options {
+            absolute: options.absolute,
+            relative: options.relative,
+            threshold: options.threshold,
+            max_iterations: options.max_iterations,
+            guess: options.guess.map(|guess| basis.tr_mul(&guess)),
+        };
+        let (a, q) = (Within { inner: a, basis: &basis }, Within { inner: q, basis: &basis });
+        widened(&narrow.solve(&a, &q, &options), &basis)
+    }
+}
+
+/// The answer in space.
+fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis: &SMatrix<T, N, K>) -> Answer<T, N> {
+    let corners = answer.witness.corners.iter().map(|corner| Corner {
+        vertex: Vertex { point: basis * corner.vertex.point, witness: basis * corner.vertex.witness },
+        weight: corner.weight,
+    });
+    Answer {
+        outcome: answer.outcome,
+        lower: answer.lower,
+        upper: answer.upper,
+        direction: basis * answer.direction,
+        support: basis * answer.support,
+        gauge: answer.gauge,
+        rival: answer.rival.map(|rival| basis * rival),
+        plan: answer.plan,
+        witness: Simplex { corners: corners.collect() },
+        dimension: answer.dimension,
+        iterations: answer.iterations,
+        support_calls: answer.support_calls,
+        vertices: answer.vertices,
+        facets: answer.facets,
+        cones: answer.cones,
+        splits: answer.splits,
+        failure: answer.failure,
+    }
+}
+
+/// The subspace that a set spans.
+struct Span<T, const N: usize> {
+    /// The first `dimension` are an orthonormal basis.
+    axes: [Vector<T, N>; N],
+    dimension: usize,
+    support_calls: u32,
+}
+
+/// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it.
+fn span<T: Real, const N: usize>(
+    a: &dyn Support<T, N>,
+    q: &dyn Gauge<T, N>,
+    options: &Options<T, N>,
+) -> Option<Span<T, N>> {
+    let (mut query, checked) = Query::new(a, q, a.radius(), *options);
+    checked.and_then(|()| query.normalize()).ok()?;
+    let mut start = Start::new(query.first_direction());
+    while start.missing() > 0 {
+        let direction = start.direction();
+        let mut point = query.support(&direction).ok()?.0.point;
+        if start.progress(&direction, &point) < query.reach() * T::of(0.01) {
+            let other = query.support(&-direction).ok()?.0.point;
+            if start.progress(&direction, &other) > start.progress(&direction, &point) {
+                point = other;
+            }
+        }
+        let thin = (query.resolution() + query.margin()) * T::count(4);
+        if !start.accept(&point, thin) {
+            start.flat(&direction);
+        }
+    }
+    let thin = (query.resolution() + query.margin()) * T::count(8);
+    if a.radius() > T::zero() || start.dimension() == N || start.height() > thin {
+        return None;
+    }
+    let mut axes = start.axes();
+    // Coordinates that no axis uses are no part of it; if as many are left as the dimension, they span it.
+    let used = |i: usize| axes.iter().any(|axis| axis[i].abs() > T::ROUNDOFF * T::count(64));
+    let coordinates = (0..N).filter(|&i| used(i)).count();
+    if coordinates == start.dimension() {
+        let mut number = 0;
+        let used: [bool; N] = core::array::from_fn(used);
+        axes = [Vector::zeros(); N];
+        for i in 0..N {
+            if used[i]
+                && let Some(axis) = axes.get_mut(number)
+            {
+                axis[i] = T::one();
+                number += 1;
+            }
+        }
+    }
+    Some(Span { axes, dimension: start.dimension(), support_calls: query.support_calls() })
+}
+
+/// On a line, two directions are all there are.
+fn solve_line<T: Real, const N: usize>(
+    a: &dyn Support<T, N>,
+    q: &dyn Gauge<T, N>,
+    axis: &Vector<T, N>,
+    options: &Options<T, N>,
+) -> Option<Answer<T, N>> {
+    let axis = unit(axis);
+    let (mut query, checked) = Query::new(a, q, T::zero(), *options);
+    checked.and_then(|()| query.normalize()).ok()?;
+    let mut ends = Simplex::new(query.support(&axis).ok()?.0);
+    ends.push(query.support(&-axis).ok()?.0);
+    query.dimension = 1;
+    let facets = [axis, -axis].map(|u| {
+        let height = ends.corners.iter().fold(-T::HUGE, |most, c| most.at_least(c.vertex.point.dot(&u)));
+        query.key(&u, height).map(|key| (height, key)).ok()
+    });
+    let [Some(first), Some(second)] = facets else { return None };
+    let lower = query.lower_from_facets([first, second].into_iter(), query.margin())?;
+    ends.minimize(query.resolution());
+    let stop = query.verdict(&crate::bounds::Bracket { lower, upper: query.upper() });
+    let answer = query.answer(stop.unwrap_or(crate::answer::Stop::Rounding), lower, ends);
+    (answer.outcome != Outcome::SupportFailed && norm(&axis) > T::zero())
+        .then_some(Answer { plan: Plan::Expansion, ..answer })
+}

@@ -1,0 +1,156 @@
+//! Warm start: what a control loop remembers from one tick to the next.
+//!
+//! From tick to tick the set A moves a little. If it moves by no more than δ (Hausdorff distance: |h_A'(u) - h_A(u)| <= δ for all unit u), then
+//!
+//! ```text
+//! d_Q(A') >= d_Q(A) - δ / ρ        (Q contains a ball of radius ρ around the origin)
+//! ```
+//!
+//! since h_A' / h_Q >= h_A / h_Q - δ / h_Q. And any direction bounds d_Q(A') from above, so the minimisers of the last ticks (several, as equal ones
+//! swap places) give the other end for one support call each. That is a certified bracket at once; if it is not narrow enough,
+//! the polar iteration follows the minimisers to where they have gone, and the solver does the rest from there, as far as the budget
+//! of iterations allows. Its bracket is never worse than the one at once.
+
+use crate::answer::{Answer, Plan, Stop};
+use crate::bounds::Bracket;
+use crate::distance::Inflated;
+use crate::plan::shoot::descend;
+use crate::qset::Gauge;
+use crate::query::{Options, Query};
+use crate::scalar::{Real, Vector};
+use crate::simplex::{Simplex, Vertex};
+use crate::solver::Solver;
+use crate::support::{Failure, Support};
+
+/// Directions remembered.
+pub const REMEMBERED: usize = 4;
+
+/// Directions nearer to each other than this cosine (18 degrees) are remembered once.
+const DISTINCT: f64 = 0.95;
+
+/// The state of a warm start: plain data, to be kept by the caller between the ticks of one loop over one gauge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracker<T, const N: usize> {
+    /// Minimisers of the last ticks, the latest first; unused ones are zero.
+    pub directions: [Vector<T, N>; REMEMBERED],
+    /// A lower bound of d for the set of the last tick; minus the largest number: none.
+    pub lower: T,
+}
+
+impl<T: Real, const N: usize> Default for Tracker<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real, const N: usize> Tracker<T, N> {
+    /// Nothing is known.
+    #[must_use]
+    pub fn new() -> Self {
+        Tracker { directions: [Vector::zeros(); REMEMBERED], lower: -T::HUGE }
+    }
+
+    /// Takes note of an answer: its direction, its rival and its lower bound.
+    pub fn remember(&mut self, answer: &Answer<T, N>) {
+        let known = answer.lower > -T::HUGE && answer.lower < T::HUGE;
+        self.lower = if known { answer.lower } else { -T::HUGE };
+        let old = self.directions;
+        let mut count = 0;
+        self.directions = [Vector::zeros(); REMEMBERED];
+        for direction in core::iter::once(answer.direction).chain(answer.rival).chain(old) {
+            let known = direction.iter().any(|&x| x != T::zero());
+            let distinct = self.directions.iter().take(count).all(|u| u.dot(&direction) < T::of(DISTINCT));
+            if known
+                && distinct
+                && let Some(slot) = self.directions.get_mut(count)
+            {
+                *slot = direction;
+                count += 1;
+            }
+        }
+    }
+
+    /// The lower bound after the set has moved by at most `moved` (a Hausdorff distance, >= 0, in A's unit); minus the largest number where nothing is
+    /// known, or where Q has no known inner radius.
+    #[must_use]
+    pub fn lower_after(&self, moved: T, q: &dyn Gauge<T, N>) -> T {
+        let inner = q.inner_radius();
+        if !(self.lower > -T::HUGE) || !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
+            return -T::HUGE;
+        }
+        // Below 0, d is minus a distance.
+        let positive = self.lower.at_least(T::zero());
+        let left = if moved > T::zero() { positive - moved / inner } else { positive };
+        let lower = if left >= T::zero() && self.lower >= T::zero() {
+            left
+        } else if self.lower >= T::zero() {
+            left * inner
+        } else {
+            self.lower - moved
+        };
+        let slack = (positive + moved + self.lower.abs() + lower.abs()) * (T::count(8) * T::ROUNDOFF);
+        let slack = if inner > T::zero() && inner < T::one() { slack / inner } else { slack };
+        (lower - slack).at_least(-T::HUGE)
+    }
+}
+
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// d_Q(A) for the next tick of a loop: A is the set of the tick before, moved by at most `moved` (Hausdorff distance, in A's unit; anything that is
+    /// not known to be a bound: a negative number), and `tracker` what was remembered of it. Updates the tracker.
+    ///
+    /// When the moved bracket already meets the options, it is the answer ([`Plan::Warm`]) for a support call per
+    /// remembered direction. Otherwise the solver goes on for `options.max_iterations`, knowing it. `interrupt` as in
+    /// [`solve_until`](Solver::solve_until).
+    pub fn solve_warm(
+        &mut self,
+        tracker: &mut Tracker<T, N>,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        moved: T,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Answer<T, N> {
+        self.polytope.reset();
+        let inflated = Inflated(a);
+        let (mut query, checked) = if q.ball_radius().is_none() && a.radius() > T::zero() {
+            Query::new(&inflated, q, T::zero(), *options)
+        } else {
+            Query::new(a, q, a.radius(), *options)
+        };
+        query.interrupt = interrupt;
+        let lower = tracker.lower_after(moved, q);
+        let answer = match checked.and_then(|()| query.normalize()).and_then(|()| at_once(&mut query, tracker, lower)) {
+            Ok(Some(answer)) => answer,
+            Ok(None) => self.decide(&mut query),
+            Err(failure) => self.give_up(&mut query, failure),
+        };
+        tracker.remember(&answer);
+        answer
+    }
+}
+
+/// The answer that needs no memory, if that is good enough.
+fn at_once<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    tracker: &Tracker<T, N>,
+    lower: T,
+) -> Result<Option<Answer<T, N>>, Failure> {
+    query.know(lower);
+    for direction in tracker.directions.iter().filter(|u| u.iter().any(|&x| x != T::zero())) {
+        query.support(direction)?;
+    }
+    if query.upper() >= T::HUGE || !(lower > T::zero()) {
+        return Ok(None);
+    }
+    let verdict = |query: &Query<'_, T, N>| query.verdict(&Bracket { lower: -T::HUGE, upper: query.upper() });
+    let mut stop = verdict(query);
+    if stop.is_none() && query.upper() > T::zero() {
+        // The minimiser has moved too.
+        let direction = query.direction;
+        stop = descend(query, &direction)?.filter(|&stop| stop != Stop::Outside).or_else(|| verdict(query));
+    }
+    Ok(stop.map(|stop| {
+        query.plan = Plan::Warm;
+        query.answer(stop, -T::HUGE, Simplex::new(Vertex::empty()))
+    }))
+}
