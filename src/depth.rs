@@ -319,7 +319,9 @@ impl<T: Real> Solver<'_, T, 3> {
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let answer = self.expand_only(Query::new(&pair, &ball, pair.radius(), options));
+        let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), options);
+        query.seeks_rivals = false;
+        let answer = self.expand_only((query, checked));
         Depth::new(&answer, &pair)
     }
 }

@@ -75,6 +75,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     rival: Option<(Vector<T, N>, T)>,
     /// About as well: with a quotient up to this.
     rivalry: T,
+    /// Is that of interest?
+    pub seeks_rivals: bool,
     /// For a general Q: the origin is certainly outside of A, and `height` is minus a distance.
     apart: bool,
     /// The lowest key of a facet that was not queued because it was above `ratio` then.
@@ -126,6 +128,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             point: Vector::zeros(),
             rival: None,
             rivalry: -T::HUGE,
+            seeks_rivals: true,
             apart: false,
             skipped: T::HUGE,
             exhaustive: false,
@@ -246,18 +249,27 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             }
             (gauge, top / gauge)
         };
-        let apart = |u: &Vector<T, N>, v: &Vector<T, N>| u.dot(v) < T::of(RIVAL_COSINE);
         if ratio < self.ratio {
-            self.rivalry = self.tolerance(T::one()).above(ratio);
-            if self.ratio <= self.rivalry && apart(&self.direction, direction) {
-                self.rival = Some((self.direction, self.ratio));
+            if self.seeks_rivals {
+                self.rivalry = self.tolerance(T::one()).above(ratio);
+                let (old, old_ratio) = (self.direction, self.ratio);
+                self.meet(&old, old_ratio, direction);
             }
             (self.direction, self.point) = (*direction, *point);
             (self.height, self.gauge, self.ratio) = (height, gauge, ratio);
-        } else if ratio <= self.rivalry && apart(&self.direction, direction) {
-            self.rival = Some((*direction, ratio));
+        } else if self.seeks_rivals {
+            let best = self.direction;
+            self.meet(direction, ratio, &best);
         }
         Ok(())
+    }
+
+    /// Keeps a direction that bounds d about as well as the best, well away from that.
+    #[inline]
+    fn meet(&mut self, direction: &Vector<T, N>, ratio: T, best: &Vector<T, N>) {
+        if ratio <= self.rivalry && direction.dot(best) < T::of(RIVAL_COSINE) {
+            self.rival = Some((*direction, ratio));
+        }
     }
 
     /// A direction well away from the best one that bounds d as tightly, up to the tolerance.
