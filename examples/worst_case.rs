@@ -24,12 +24,13 @@ fn row<const N: usize, const V: usize, const F: usize>() {
     let answer = solver.solve(&Points, &Ball::unit(), &Options::default());
     let time = start.elapsed().as_secs_f64() * 1e6;
     let gap = answer.upper - answer.lower;
-    println!("| {N} | {} | {} | {gap:.1e} | {time:.0} |", answer.vertices, answer.facets);
+    let plan = format!("{:?}", answer.plan).to_lowercase();
+    println!("| {N} | {F} | {plan} | {} | {gap:.1e} | {:.1} |", answer.iterations, time / 1e3);
 }
 
 fn main() {
-    println!("| dimension | vertices | facets | upper - lower | us |");
-    println!("|---|---|---|---|---|");
+    println!("| dimension | facets | plan | points | upper - lower | ms |");
+    println!("|---|---|---|---|---|---|");
     row::<2, 64, 128>();
     row::<3, 64, 128>();
     row::<3, 256, 512>();

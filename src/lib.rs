@@ -29,11 +29,15 @@
 //!
 //! # How it works
 //!
-//! Both sets are known by their support functions only ([`support`], [`qset`]). The solver grows a polytope inside A ([`solver`],
-//! Algorithm 1 of the paper). The facet that is lowest with respect to Q bounds d from below; the support value along that facet's normal
+//! Both sets are known by their support functions only ([`support`], [`qset`]). The solver ([`solver`]) grows a polytope inside A
+//! (`plan::expansion`, Algorithm 1 of the paper). The facet that is lowest with respect to Q bounds d from below; the support value along that facet's normal
 //! bounds d from above, since *any* direction does; and the support point, put into the polytope, raises the facet.
 //! It ends when both bounds agree to the tolerance, when a threshold is decided, when arithmetic has nothing left to
-//! say, or when the memory is full; the bracket is true at every moment, so any end is a good end.
+//! say, or when the caller's limit is reached; the bracket is true at every moment, so any end is a good end.
+//!
+//! In six dimensions a polytope outgrows any memory. Then the same expansion goes over all directions cone by cone (`plan::conewise`), in the same
+//! memory, whatever its size. A polytopal Q needs neither: one ray per vertex is a convex problem (`plan::rays`). From tick to tick of a
+//! control loop the bracket moves along with the set ([`tracker`]).
 //!
 //! Three things keep it exact and fast:
 //!
@@ -53,14 +57,16 @@
 //!
 //! ```text
 //! capi                          C ABI: include/qdist.h
-//!  depth   prepare              two bodies in space; vertex graphs of large hulls
+//!  grasp                        contacts, friction, hands: wrench sets (feature)
+//!  depth  tracker  span  prepare   two bodies in space; warm start; flat sets; vertex graphs of large hulls
 //!   meridian                    two bodies on one axis
-//!    solver                     Algorithm 1
-//!     query                     one query's state: best upper bound, bracket, answer
-//!      polytope  distance       facets, adjacency, queue; nearest point
-//!       start  simplex  bounds  answer   first and small simplices; what certifies the bracket; outcomes
-//!        support  qset          the sets A and Q
-//!         workspace  scalar     memory; f32 and f64
+//!    solver                     which plan, and the answer
+//!     plan                      rays, expansion (Algorithm 1), conewise expansion
+//!      query                    one query's state: best upper bound, bracket, answer
+//!       polytope  distance      facets, adjacency, queue; nearest point
+//!        start  simplex  bounds  answer   first and small simplices; what certifies the bracket; outcomes
+//!         support  qset         the sets A and Q
+//!          workspace  scalar    memory; f32 and f64
 //! ```
 //!
 //! # Memory, threads, failure
@@ -73,6 +79,7 @@
 //! # Features
 //!
 //! * `std`: square roots from the standard library. Nothing else changes.
+//! * `grasp`: contacts, friction and hands as sets.
 //! * `capi`: the C functions. `panic-handler`: for the freestanding C library.
 //!
 //! # Sources
@@ -105,6 +112,7 @@ mod query;
 pub mod scalar;
 pub mod simplex;
 pub mod solver;
+mod span;
 mod start;
 pub mod support;
 pub mod tracker;

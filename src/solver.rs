@@ -81,7 +81,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let open = matches!(rays.stop, Stop::Rounding | Stop::Iterations | Stop::Interrupted);
             if open
                 && let Ok(Opening::Expanded(expanded, floor)) = self.open(query)
-                && self.lower(query, expanded.key).is_some_and(|lower| lower > rays.lower)
+                && self.polytope.lower(query, expanded.key).is_some_and(|lower| lower > rays.lower)
             {
                 return self.conclude(query, expanded, floor);
             }
@@ -136,8 +136,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             }
             floor = Some(near);
         }
-        let expanded = match self.start(query, &first)? {
-            None => self.expand(query)?,
+        let expanded = match self.polytope.start(query, &first)? {
+            None => self.polytope.expand(query)?,
             Some(stop) => Expanded { stop, key: -T::HUGE, facet: None },
         };
         Ok(Opening::Expanded(expanded, floor))
@@ -150,7 +150,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         expanded: Expanded<T>,
         floor: Option<Nearest<T, N>>,
     ) -> Answer<T, N> {
-        let Some(cones) = self.conewise(query, &expanded) else { return self.conclude(query, expanded, floor) };
+        let Some(cones) = self.polytope.conewise(query, &expanded) else {
+            return self.conclude(query, expanded, floor);
+        };
         match cones {
             Ok(found) => {
                 query.plan = Plan::Cones;
@@ -210,12 +212,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
         if !apart && self.polytope.peak_facets() > 0 {
-            if let Err(failure) = self.widen(query, stop, key) {
+            if let Err(failure) = self.polytope.widen(query, stop, key) {
                 return self.give_up(query, failure);
             }
-            if let Some(lower) = self.lower(query, key) {
+            if let Some(lower) = self.polytope.lower(query, key) {
                 let facet = facet.filter(|_| query.ball.is_some());
-                let witness = self.touching_simplex(query, facet);
+                let witness = self.polytope.touching_simplex(query, facet);
                 return self.report(query, stop, lower, witness);
             }
         }

@@ -46,19 +46,18 @@ use super::expansion::Expanded;
 use super::shoot::descend;
 use crate::answer::Stop;
 use crate::bounds::Bracket;
-use crate::polytope::{Facet, Insertion};
+use crate::polytope::{Facet, Insertion, Polytope};
 use crate::query::Query;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
-use crate::solver::Solver;
 use crate::support::Failure;
 use heapless::Vec;
 
 /// The gap of the first pass at least, as a share of d.
 const FIRST_GAP: f64 = 0.05;
-/// How much smaller the gap of the next pass is. (Time of six grasps at 1e-4 and 2,048 facets, against 16: with 4, 1.43; with 8, 1.13; with
-/// 64, 0.83; with 1,024, that is without passes in between, 0.73.)
-const NARROWING: f64 = 64.0;
+/// How much smaller the gap of the next pass is, for a query that may be cut short and for one that may not. (Time of six grasps at 1e-4 and
+/// 2,048 facets, against 16: with 4, 1.43; with 8, 1.13; with 64, 0.83; with 1,024, that is without passes in between, 0.73.)
+const NARROWINGS: [f64; 2] = [8.0, 64.0];
 /// Directions from which upper bounds are sought before the first pass.
 const STARTS: usize = 4;
 
@@ -90,14 +89,14 @@ enum End<T> {
     Stopped(Stop),
 }
 
-impl<T: Real, const N: usize> Solver<'_, T, N> {
+impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Searches cone by cone after the expansion that is still in memory; `None` when there is too little of it for a start.
     pub(crate) fn conewise(
         &mut self,
         query: &mut Query<'_, T, N>,
         expanded: &Expanded<T>,
     ) -> Option<Result<Cones<T, N>, Failure>> {
-        if !self.polytope.holds_cones() {
+        if !self.holds_cones() {
             return None;
         }
         let lower = self.lower(query, expanded.key).unwrap_or(-T::HUGE);
@@ -118,7 +117,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let mut starts = Vec::<Vector<T, N>, STARTS>::new();
         let _ = starts.push(query.direction);
         for _ in 0..16 * STARTS {
-            let lowest = self.polytope.pop_lowest().and_then(|(_, index)| self.polytope.facet(index));
+            let lowest = self.pop_lowest().and_then(|(_, index)| self.facet(index));
             let Some(Facet { normal, .. }) = lowest else { break };
             if starts.iter().all(|u| u.dot(normal) < T::of(0.95)) && starts.push(*normal).is_err() {
                 break;
@@ -136,7 +135,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// Passes at shrinking gaps.
     fn passes(&mut self, query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
         let skipped = query.mirrors();
-        let mut gap = first_gap(query);
+        let [often, seldom] = NARROWINGS;
+        let narrowing = T::of(if query.may_be_cut_short() { often } else { seldom });
+        let mut gap = first_gap(query, narrowing);
         loop {
             let is_last = query.level(gap, T::zero()) >= query.level(T::zero(), T::zero());
             let pass = match self.pass(query, gap, skipped)? {
@@ -160,7 +161,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 found.stop = stop;
                 return Ok(());
             }
-            gap /= T::of(NARROWING);
+            gap /= narrowing;
         }
     }
 
@@ -205,20 +206,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return Ok(End::Stopped(Stop::Outside));
         }
         let within = |v: Vertex<T, N>| Vertex { point: cone.coordinates(&v.point), ..v };
-        if self.polytope.make_orthant(within(apex)).is_none() {
+        if self.make_orthant(within(apex)).is_none() {
             return Ok(End::Stopped(Stop::Capacity));
         }
         // The lowest key of a facet that is not queued.
         let mut final_key = T::HUGE;
         self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?;
-        while let Some((key, index)) = self.polytope.pop_lowest() {
+        while let Some((key, index)) = self.pop_lowest() {
             if key >= query.level(gap, query.reserve(margins)) {
                 return Ok(End::Done(final_key.at_most(key)));
             }
             if let Some(stop) = query.exhausted() {
                 return Ok(End::Stopped(stop));
             }
-            let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { break };
+            let Some(&Facet { normal, offset, .. }) = self.facet(index) else { break };
             let (vertex, height) = query.support(&cone.direction(&normal))?;
             if query.is_outside(height) {
                 return Ok(End::Stopped(Stop::Outside));
@@ -226,13 +227,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             if query.is_below() {
                 return Ok(End::Stopped(Stop::Below));
             }
-            let tolerance = self.polytope.resolution();
+            let tolerance = self.resolution();
             if height - offset <= tolerance {
                 // On the boundary of A: nothing raises this facet.
                 final_key = final_key.at_most(key);
                 continue;
             }
-            match self.polytope.insert(index, within(vertex), tolerance) {
+            match self.insert(index, within(vertex), tolerance) {
                 Some(Insertion::Done) => {
                     self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?
                 }
@@ -255,16 +256,16 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         level: T,
         final_key: &mut T,
     ) -> Result<(), Failure> {
-        while let Some(index) = self.polytope.next_fresh() {
-            let Some(&Facet { normal, mut offset, .. }) = self.polytope.facet(index) else { break };
+        while let Some(index) = self.next_fresh() {
+            let Some(&Facet { normal, mut offset, .. }) = self.facet(index) else { break };
             let mut direction = cone.direction(&normal);
             if !cone.is_orthant() {
                 let factor = T::one() / norm(&direction);
-                self.polytope.scale(index, factor);
+                self.scale(index, factor);
                 (direction, offset) = (direction * factor, offset * factor);
             }
             let key = query.key(&direction, offset)?;
-            if !self.polytope.set_key(index, key, key < level) {
+            if !self.set_key(index, key, key < level) {
                 *final_key = final_key.at_most(key);
             }
         }
@@ -280,18 +281,18 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 let offset = whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF);
                 query.lower_from_offset(offset, margin)
             }
-            None => query.lower_from_facets(self.polytope.facets().map(|f| (f.offset, f.key)), margin),
+            None => query.lower_from_facets(self.facets().map(|f| (f.offset, f.key)), margin),
         };
         lower.unwrap_or(-T::HUGE)
     }
 
     /// The points of the lowest facet.
     fn cone_witness(&self, cone: &Cone<N>) -> Option<Simplex<T, N>> {
-        let mut simplex = self.polytope.corners(self.polytope.lowest()?);
+        let mut simplex = self.corners(self.lowest()?);
         for corner in &mut simplex.corners {
             corner.vertex.point = cone.point(&corner.vertex.point);
         }
-        simplex.minimize(self.polytope.resolution());
+        simplex.minimize(self.resolution());
         Some(simplex)
     }
 
@@ -309,7 +310,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                     continue;
                 }
                 let (mut near_i, mut near_j) = (0, 0);
-                for facet in self.polytope.facets().filter(|f| f.key < level) {
+                for facet in self.facets().filter(|f| f.key < level) {
                     if facet.normal[i] >= facet.normal[j] {
                         near_i += 1;
                     } else {
@@ -326,12 +327,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 }
 
-/// The gap asked for, times a power that makes it a first one.
-fn first_gap<T: Real, const N: usize>(query: &Query<'_, T, N>) -> T {
+/// The gap asked for, times a power of `narrowing` that makes it a first one.
+fn first_gap<T: Real, const N: usize>(query: &Query<'_, T, N>, narrowing: T) -> T {
     let last = T::one() - query.level(T::zero(), T::zero()) / query.ratio();
     let mut gap = last.at_least(T::ROUNDOFF);
     while gap < T::of(FIRST_GAP) {
-        gap *= T::of(NARROWING);
+        gap *= narrowing;
     }
     // The last one must not be missed by rounding.
     gap * T::of(0.999)

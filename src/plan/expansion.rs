@@ -3,15 +3,14 @@
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::distance::Cloud;
-use crate::polytope::{Facet, Index, Insertion};
+use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::query::Query;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
-use crate::solver::Solver;
 use crate::start::Start;
 use crate::support::Failure;
 
-/// Insertions per dimension that [`Solver::widen`] may spend.
+/// Insertions per dimension that [`Polytope::widen`] may spend.
 const WIDENINGS: usize = 8;
 
 /// What the expansion ended with: the lowest key, and its facet if it is known.
@@ -21,11 +20,11 @@ pub(crate) struct Expanded<T> {
     pub facet: Option<Index>,
 }
 
-impl<T: Real, const N: usize> Solver<'_, T, N> {
+impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Lines 5 to 9 of Algorithm 1.
     pub(crate) fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
         loop {
-            let Some((key, index)) = self.polytope.pop_lowest() else {
+            let Some((key, index)) = self.pop_lowest() else {
                 // No facet below the best upper bound is left.
                 if !self.confirm(query)? {
                     continue;
@@ -35,7 +34,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             };
             let key = key.at_most(query.skipped());
             let end = |stop| Ok(Expanded { stop, key, facet: Some(index) });
-            let Some(&Facet { normal, offset, .. }) = self.polytope.facet(index) else { return end(Stop::Rounding) };
+            let Some(&Facet { normal, offset, .. }) = self.facet(index) else { return end(Stop::Rounding) };
             if let Some(stop) = self.verdict(query, key) {
                 if !self.confirm(query)? {
                     continue;
@@ -52,7 +51,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 }
                 return end(Stop::Outside);
             }
-            let tolerance = self.polytope.resolution();
+            let tolerance = self.resolution();
             // On the boundary of A, as far as arithmetic can tell?
             let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
             if let Some(stop) = self.verdict(query, key).or(final_facet) {
@@ -61,7 +60,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 }
                 return end(stop);
             }
-            match self.polytope.insert(index, vertex, tolerance) {
+            match self.insert(index, vertex, tolerance) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 Some(Insertion::Full) => return end(Stop::Capacity),
                 Some(Insertion::Rejected) | None => return end(Stop::Rounding),
@@ -76,7 +75,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return Ok(true);
         }
         query.forget_skipped();
-        if let Some(lowest) = self.polytope.requeue(query.ratio()) {
+        if let Some(lowest) = self.requeue(query.ratio()) {
             query.skip(lowest);
         }
         Ok(false)
@@ -99,7 +98,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
     /// inside.
     pub(crate) fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
-        if !self.polytope.is_sound() {
+        if !self.is_sound() {
             return None;
         }
         match query.ball {
@@ -112,7 +111,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 )
             }
             None => {
-                let facets = self.polytope.facets().map(|f| (f.offset, f.key));
+                let facets = self.facets().map(|f| (f.offset, f.key));
                 query.lower_from_facets(facets, query.margin())
             }
         }
@@ -120,10 +119,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// Line 7: keys of the new facets. One above the best upper bound will never be the lowest that matters.
     fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
-        while let Some(index) = self.polytope.next_fresh() {
-            let Some(facet) = self.polytope.facet(index) else { break };
+        while let Some(index) = self.next_fresh() {
+            let Some(facet) = self.facet(index) else { break };
             let key = query.key(&facet.normal, facet.offset)?;
-            if !self.polytope.set_key(index, key, key < query.ratio()) {
+            if !self.set_key(index, key, key < query.ratio()) {
                 query.skip(key);
             }
         }
@@ -149,9 +148,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                     vertex = other;
                 }
             }
-            let thin = (self.polytope.resolution() + query.margin()) * T::count(4);
+            let thin = (self.resolution() + query.margin()) * T::count(4);
             if start.accept(&vertex.point, thin) {
-                if self.polytope.add_vertex(vertex).is_none() {
+                if self.add_vertex(vertex).is_none() {
                     return Ok(Some(Stop::Capacity));
                 }
             } else {
@@ -162,7 +161,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if start.dimension() < N {
             return Ok(Some(Stop::Flat));
         }
-        if self.polytope.make_simplex(&start.normals()).is_none() {
+        if self.make_simplex(&start.normals()).is_none() {
             return Ok(Some(Stop::Capacity));
         }
         self.rate_fresh(query)?;
@@ -175,20 +174,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if query.ball.is_some() || stop != Stop::Rounding {
             return Ok(());
         }
-        let bracket = |solver: &Self, query: &Query<'_, T, N>| {
-            solver.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
+        let bracket = |polytope: &Self, query: &Query<'_, T, N>| {
+            polytope.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
         };
         for _ in 0..WIDENINGS * N {
             if bracket(self, query).is_some_and(|b| query.is_met(&b)) {
                 return Ok(());
             }
-            let Some((index, normal, offset)) = self.polytope.nearest_facet() else { return Ok(()) };
+            let Some((index, normal, offset)) = self.nearest_facet() else { return Ok(()) };
             let (vertex, height) = query.support(&normal)?;
-            let tolerance = self.polytope.resolution();
+            let tolerance = self.resolution();
             if height - offset <= tolerance + tolerance {
                 return Ok(());
             }
-            match self.polytope.insert(index, vertex, tolerance) {
+            match self.insert(index, vertex, tolerance) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 _ => return Ok(()),
             }
@@ -201,22 +200,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// the plane, or belong to another of several minima.
     pub(crate) fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
         let lowest = match facet {
-            Some(index) => self.polytope.facet(index),
-            None => self.polytope.lowest(),
+            Some(index) => self.facet(index),
+            None => self.lowest(),
         };
         let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
-        let mut simplex = self.polytope.corners(facet);
+        let mut simplex = self.corners(facet);
         if query.ball.is_none() {
             return simplex;
         }
         let foot = query.foot();
-        let resolution = self.polytope.resolution();
+        let resolution = self.resolution();
         simplex.translate(&-foot);
         simplex.minimize(resolution);
         let miss = simplex.point();
         let near = resolution * T::count(64) + query.options.relative.at_least(T::zero()).root() * norm(&foot);
         if miss.dot(&miss) > near * near {
-            let cloud = Cloud { vertices: self.polytope.vertices(), origin: foot };
+            let cloud = Cloud { vertices: self.vertices(), origin: foot };
             if let Some(found) = cloud.nearest(&facet.normal)
                 && found.distance * found.distance < miss.dot(&miss)
             {

@@ -1,10 +1,9 @@
 //! The plans of a query: what it needs is done, and nothing else.
 //!
 //! ```text
-//!  span                             a flat A, in its own subspace
-//!    rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
-//!      shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
-//!        ray                        the simplex that a ray pierces
+//!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
+//!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
+//!      ray                        the simplex that a ray pierces
 //! ```
 
 mod cone;
@@ -13,4 +12,3 @@ pub(crate) mod expansion;
 mod ray;
 pub(crate) mod rays;
 pub(crate) mod shoot;
-mod span;
