@@ -20,11 +20,12 @@ pub struct Solver<'w, T, const N: usize> {
     pub(crate) polytope: Polytope<'w, T, N>,
 }
 
-/// What is known before the plan that needs memory has had its say.
-enum Opening<T, const N: usize> {
-    Decided(Answer<T, N>),
-    /// The expansion's end, and the point of A that was nearest to the origin before it, if that is outside of the core.
-    Expanded(Expanded<T>, Option<Nearest<T, N>>),
+/// What is known when the plans that any query begins with have had their say.
+struct Opening<T, const N: usize> {
+    /// The expansion's end; or, with no expansion, that of the distance iteration, which decided.
+    expanded: Result<Expanded<T>, Stop>,
+    /// The point of A nearest to the origin, where A has a ball term.
+    near: Option<Nearest<T, N>>,
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
@@ -80,20 +81,19 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
             let open = matches!(rays.stop, Stop::Rounding | Stop::Iterations | Stop::Interrupted);
             if open
-                && let Ok(Opening::Expanded(expanded, floor)) = self.open(query)
+                && let Ok(Opening { expanded: Ok(expanded), near }) = self.open(query)
                 && self.polytope.lower(query, expanded.key).is_some_and(|lower| lower > rays.lower)
             {
-                return self.conclude(query, expanded, floor);
+                return self.conclude(query, expanded, near);
             }
             query.plan = Plan::Rays;
             return query.answer(rays.stop, rays.lower, rays.witness);
         }
         match self.open(query) {
-            Ok(Opening::Decided(answer)) => answer,
-            Ok(Opening::Expanded(expanded, floor)) if expanded.stop == Stop::Capacity => {
-                self.solve_cones(query, expanded, floor)
+            Ok(Opening { expanded: Ok(expanded), near }) if expanded.stop == Stop::Capacity => {
+                self.solve_cones(query, expanded, near)
             }
-            Ok(Opening::Expanded(expanded, floor)) => self.conclude(query, expanded, floor),
+            Ok(opening) => self.close(query, opening),
             Err(failure) => self.give_up(query, failure),
         }
     }
@@ -116,9 +116,19 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
         self.polytope.reset();
         match checked.and_then(|()| query.normalize()).and_then(|()| self.open(&mut query)) {
-            Ok(Opening::Decided(answer)) => answer,
-            Ok(Opening::Expanded(expanded, floor)) => self.conclude(&mut query, expanded, floor),
+            Ok(opening) => self.close(&mut query, opening),
             Err(failure) => self.give_up(&mut query, failure),
+        }
+    }
+
+    /// The answer after the opening.
+    fn close(&mut self, query: &mut Query<'_, T, N>, opening: Opening<T, N>) -> Answer<T, N> {
+        match (opening.expanded, opening.near) {
+            (Ok(expanded), near) => self.conclude(query, expanded, near),
+            (Err(stop), near) => {
+                query.plan = Plan::Distance;
+                self.lower_by_vertices(query, stop, near)
+            }
         }
     }
 
@@ -131,8 +141,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let (stop, near) = self.approach(query, &first)?;
             let bracket = Bracket { lower: query.lower_from_distance(near.distance), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
-                query.plan = Plan::Distance;
-                return Ok(Opening::Decided(self.report(query, stop, bracket.lower, near.simplex)));
+                return Ok(Opening { expanded: Err(stop), near: Some(near) });
             }
             floor = Some(near);
         }
@@ -140,7 +149,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             None => self.polytope.expand(query)?,
             Some(stop) => Expanded { stop, key: -T::HUGE, facet: None },
         };
-        Ok(Opening::Expanded(expanded, floor))
+        Ok(Opening { expanded: Ok(expanded), near: floor })
     }
 
     /// Cone by cone, after the polytope has outgrown the memory.

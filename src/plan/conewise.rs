@@ -113,6 +113,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// The polar power iteration from the best direction and the normals of the lowest facets.
+    #[inline(never)]
     fn descend_from_lowest(&mut self, query: &mut Query<'_, T, N>) -> Result<Option<Stop>, Failure> {
         let mut starts = Vec::<Vector<T, N>, STARTS>::new();
         let _ = starts.push(query.direction);
@@ -133,6 +134,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// Passes at shrinking gaps.
+    #[inline(never)]
     fn passes(&mut self, query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
         let skipped = query.mirrors();
         let [often, seldom] = NARROWINGS;
@@ -194,6 +196,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// Algorithm 1 in one cone, until no facet is below the level of this gap.
+    #[inline(never)]
     fn expand_cone(&mut self, query: &mut Query<'_, T, N>, cone: &Cone<N>, gap: T) -> Result<End<T>, Failure> {
         // Margins of the lower bound, and one for the upper.
         let margins = 4 + cone.depth();

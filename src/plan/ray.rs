@@ -63,7 +63,13 @@ impl<T: Real, const N: usize> Ray<T, N> {
 
     /// The plane y.x = 1 through the corners.
     pub fn plane(&self) -> Vector<T, N> {
-        self.inverse.row_sum_tr()
+        let mut plane = Vector::zeros();
+        for j in 0..N {
+            for i in 0..N {
+                plane[j] += self.inverse[(i, j)];
+            }
+        }
+        plane
     }
 
     /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
@@ -104,7 +110,14 @@ impl<T: Real, const N: usize> Ray<T, N> {
                 }
             }
         }
-        let row = self.inverse.row(out.min(N - 1)).into_owned();
+        let mut row = [T::zero(); N];
+        for i in 0..N {
+            for j in 0..N {
+                if i == out {
+                    row[j] = self.inverse[(i, j)];
+                }
+            }
+        }
         for i in 0..N {
             if i != out {
                 self.weights[i] = (self.weights[i] - shares[i] * step).at_least(T::zero());
@@ -139,8 +152,14 @@ impl<T: Real, const N: usize> Ray<T, N> {
 
     /// One step of Newton's iteration for the inverse, X (2 - B X), after which the weights are as good as rounding allows.
     pub fn polish(&mut self) {
-        let basis = SMatrix::<T, N, N>::from_fn(|i, j| self.corners[j].point[i]);
-        let miss = SMatrix::<T, N, N>::identity() - basis * self.inverse;
+        let mut miss = SMatrix::<T, N, N>::identity();
+        for k in 0..N {
+            for j in 0..N {
+                for i in 0..N {
+                    miss[(i, j)] -= self.corners[k].point[i] * self.inverse[(k, j)];
+                }
+            }
+        }
         self.inverse += self.inverse * miss;
         self.weights = (self.inverse * self.target).map(|w| w.at_least(T::zero()));
     }

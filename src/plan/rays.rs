@@ -36,6 +36,7 @@ pub(crate) struct Crossings<T, const N: usize> {
 }
 
 /// d by one ray per vertex of Q. `None` when rays cannot decide: Q is not polytopal, or the origin is not certainly inside A.
+#[inline(never)]
 pub(crate) fn solve_rays<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
 ) -> Result<Option<Crossings<T, N>>, Failure> {
@@ -119,6 +120,7 @@ impl<T: Real, const N: usize> Rays<T, N> {
 
 /// Radius of a ball around the origin in A, up to the margin: the points e_i and minus their mean, scaled to their crossings,
 /// have it in their hull.
+#[inline(never)]
 fn ball_inside<T: Real, const N: usize>(query: &mut Query<'_, T, N>) -> Result<Option<T>, Failure> {
     let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
     let root = T::count(N).root();

@@ -22,6 +22,7 @@ pub(crate) enum Shot {
 
 /// A ray along `target`, shot until the crossing is beyond `level`, or known to a share `accuracy` of its distance; from the simplex that
 /// another ray pierced, if this one does as well.
+#[inline(never)]
 pub(crate) fn shoot<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     target: &Vector<T, N>,
@@ -104,6 +105,7 @@ fn follow<T: Real, const N: usize>(
 ///
 /// Why it descends: let t be the crossing along q = s_Q(u) and v the normal there. Then h_A(v) = t v.q <= t h_Q(v), and
 /// h_A(u) >= t u.q = t h_Q(u). So h_A(v) / h_Q(v) <= t <= h_A(u) / h_Q(u).
+#[inline(never)]
 pub(crate) fn descend<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     from: &Vector<T, N>,
