@@ -150,18 +150,23 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         expanded: Expanded<T>,
         floor: Option<Nearest<T, N>>,
     ) -> Answer<T, N> {
+        // What the search stores are images of A's points in its cones. Until it has a bound, those stored before are what is known.
+        let floor = self.nearest_stored(query, floor);
         let Some(cones) = self.conewise(query, &expanded) else { return self.conclude(query, expanded, floor) };
+        query.plan = Plan::Cones;
         match cones {
+            Ok(found) if found.stop == Stop::Outside || found.lower <= -T::HUGE => {
+                self.polytope.forget();
+                self.conclude(query, Expanded { stop: found.stop, key: -T::HUGE, facet: None }, floor)
+            }
             Ok(found) => {
-                query.plan = Plan::Cones;
-                if found.stop == Stop::Outside || found.lower <= -T::HUGE {
-                    let expanded = Expanded { stop: found.stop, key: -T::HUGE, facet: None };
-                    return self.conclude(query, expanded, floor);
-                }
                 let answer = self.report(query, found.stop, found.lower, found.witness);
                 Answer { cones: found.cones, splits: found.splits, ..answer }
             }
-            Err(failure) => self.give_up(query, failure),
+            Err(failure) => {
+                self.polytope.forget();
+                self.lower_by_vertices(query, Stop::Failed(failure.0), floor)
+            }
         }
     }
 
@@ -209,7 +214,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
-        if !apart && self.polytope.peak_facets() > 0 {
+        if !apart && self.polytope.facets().next().is_some() {
             if let Err(failure) = self.widen(query, stop, key) {
                 return self.give_up(query, failure);
             }
@@ -241,15 +246,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
     /// the point that was nearest before.
     fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
-        let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
-        let stored = cloud.nearest(&query.first_direction());
-        match stored.into_iter().chain(floor).reduce(|a, b| if b.distance < a.distance { b } else { a }) {
+        match self.nearest_stored(query, floor) {
             Some(near) => {
                 let lower = query.lower_from_distance(near.distance);
                 self.report(query, stop, lower, near.simplex)
             }
             None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),
         }
+    }
+
+    /// The point nearest to the origin of those that are known: the stored vertices' hull, and one from before.
+    fn nearest_stored(&self, query: &Query<'_, T, N>, before: Option<Nearest<T, N>>) -> Option<Nearest<T, N>> {
+        let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
+        let stored = cloud.nearest(&query.first_direction());
+        stored.into_iter().chain(before).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }
 
     pub(crate) fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {

@@ -43,7 +43,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// A lower end that would end the query now, `reserve` included; at least a share `gap` below the upper end.
     pub fn level(&self, gap: T, reserve: T) -> T {
-        let met = self.tolerance(T::of(0.99)).below(self.ratio) + reserve;
+        let met = self.tolerance(Self::sharpness() * T::of(0.99)).below(self.ratio) + reserve;
         let enough = self.options.threshold.map_or(met, |threshold| met.at_most(threshold + reserve));
         enough.at_most(self.ratio - self.ratio * gap)
     }
