@@ -230,6 +230,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
                 Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {
+                    let near = floor.into_iter().fold(near, |a, b| if b.distance < a.distance { b } else { a });
                     return self.lower_by_vertices(query, stop, Some(near));
                 }
                 Ok((end, near)) => {

@@ -160,7 +160,7 @@ fn check<T: Real>(
 fn budgets<T: Real>() {
     let mut dice = Dice::new(71);
     let mut above = 0;
-    for round in 0..10 {
+    for round in 0..20 {
         let count = 3 + round % 3;
         let norm = if round % 2 == 0 { Norm::LInf } else { Norm::L1 };
         // Every fourth is an object with a plane of symmetry.
@@ -259,7 +259,7 @@ fn stiff<T: Real>() {
     let size = (150, 1500);
     let mut memory = Memory::new::<T, 6>(size.0, size.1);
     let (mut converged, mut all) = (0, 0);
-    for round in 0..70 {
+    for round in 0..140 {
         let (mut scale, mut mu, mut mus) = (1.0, 0.6, 0.3);
         let mut task = if round % 2 == 0 { Task::Ball } else { Task::Ellipsoid([1.0, 2.0, 1.0, 0.5, 1.0, 0.5]) };
         let mut near = 0.0;
@@ -317,12 +317,39 @@ fn stiff_grasps_in_f32() {
     stiff::<f32>();
 }
 
+/// Contacts on one side only hold nothing, d = 0: that is found out, not searched for.
+#[test]
+fn grasps_that_do_not_hold() {
+    let mut dice = Dice::new(76);
+    let size = (200, 1500);
+    let mut memory = Memory::new::<f64, 6>(size.0, size.1);
+    for round in 0..20 {
+        let list = (0..3 + round % 3).map(|_| {
+            let p = [1.0, 0.5 * dice.signed(), 0.5 * dice.signed()];
+            let n = [-1.0, 0.3 * dice.signed(), 0.3 * dice.signed()];
+            let l = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+            touch(p, n.map(|x| x / l), 0.5, 0.2)
+        });
+        let norm = if round % 2 == 0 { Norm::LInf } else { Norm::L1 };
+        let grasp = Grasp::new(list.collect(), 1.0, norm);
+        let o = Options { relative: 1e-3, ..Options::default() };
+        let answer = memory.solver::<f64, 6>().solve(&grasp.set(), &Ball::unit(), &o);
+        let seen = Seen::from(&answer);
+        assert_eq!(broken_promise(&seen, &o, size.0, size.1), None, "{round} {seen:?}");
+        assert!(seen.lower <= 0.0 && 0.0 <= seen.upper && seen.upper - seen.lower < 1e-12, "{round} {seen:?}");
+        if std::env::var("QDIST_TELL").is_ok() {
+            println!("no hold {round} {seen:?} {:?}", answer.plan);
+        }
+        assert!(seen.outcome == Outcome::Touching && seen.iterations < 2000, "{round} {seen:?} {:?}", answer.plan);
+    }
+}
+
 /// The origin next to the boundary: W moved along its weakest direction until a distance is left.
 fn next_to_the_boundary<T: Real>() {
     let mut dice = Dice::new(73);
     let size = (200, 2048);
     let mut memory = Memory::new::<T, 6>(size.0, size.1);
-    for round in 0..4 {
+    for round in 0..12 {
         let grasp = Grasp::new(contacts::<T>(&mut dice, 3 + round % 2, 0.6, 0.3), 1.0, Norm::LInf);
         let set = grasp.set();
         let o = Options { relative: T::of(1e-3), max_iterations: 2000, ..Options::default() };
@@ -448,10 +475,12 @@ fn references<T: Real>(test: &str, loose: f64) {
                 assert_eq!(broken_promise(&seen, &o, size.0, size.1), None, "{tell}");
                 assert!(seen.lower <= d + off && d - off <= seen.upper, "{tell}");
                 let polytopal = !matches!(q["type"].as_str().unwrap(), "ball" | "ellipsoid");
-                assert!(!polytopal || limit < 600 || answer.plan == Plan::Rays, "{tell}");
+                let fine = T::ROUNDOFF.to_f64() < 1e-10;
+                assert!(!polytopal || !fine || limit < 600 || answer.plan == Plan::Rays, "{tell}");
                 runs += 1;
                 if limit == 4000 {
-                    assert_eq!(answer.outcome, Outcome::Converged, "{tell}");
+                    assert!(!fine || answer.outcome == Outcome::Converged, "{tell}");
+                    assert!(seen.upper - seen.lower < 0.1 * d, "{tell}");
                     converged += 1;
                 }
             }
@@ -481,10 +510,10 @@ fn derivatives_of_a_grasp() {
     let mut dice = Dice::new(75);
     let size = (400, 4096);
     let mut compared = 0;
-    for round in 0..3 {
+    for round in 0..8 {
         let list = contacts::<f64>(&mut dice, 4, 0.6, 0.3);
         let solve = |grasp: &Grasp<f64>| {
-            let o = Options { relative: 1e-3, ..Options::default() };
+            let o = Options { relative: 1e-4, ..Options::default() };
             let mut memory = Memory::new::<f64, 6>(size.0, size.1);
             let answer = memory.solver::<f64, 6>().solve(&grasp.set(), &Ball::unit(), &o);
             assert_eq!(answer.outcome, Outcome::Converged, "{:?}", Seen::from(&answer));
@@ -496,10 +525,10 @@ fn derivatives_of_a_grasp() {
             continue;
         }
         compared += 1;
-        let (d, step) = (answer.upper, 0.02);
+        let (d, step) = (answer.upper, 0.002);
         let differ =
             |make: &dyn Fn(f64) -> Grasp<f64>| (solve(&make(step)).upper - solve(&make(-step)).upper) / (2.0 * step);
-        let near = |a: f64, b: f64, what: &str| assert!((a - b).abs() < 0.06 * d, "{round} {what}: {a} {b}, d = {d}");
+        let near = |a: f64, b: f64, what: &str| assert!((a - b).abs() < 0.08 * d, "{round} {what}: {a} {b}, d = {d}");
         // All forces: d grows with them.
         near(answer.derivative(|x| *x), d, "forces");
         // Torque scale.
@@ -516,11 +545,26 @@ fn derivatives_of_a_grasp() {
             Grasp::new(c.collect(), 1.0, Norm::LInf)
         };
         near(by, differ(&shifted), "reference");
-        // Friction and one position: u* and h_Q chain.
+        // Friction and one position: u* and h_Q chain. A contact with h_i = 0 at u* counts for a share that u* does not tell.
         let u = answer.direction;
-        let chained = |make: &dyn Fn(f64) -> Grasp<f64>| {
+        let chained = |make: &dyn Fn(f64) -> Grasp<f64>, found: f64, what: &str| {
             let h = 1e-5;
-            (make(h).height(&u) - make(-h).height(&u)) / (2.0 * h) / answer.gauge
+            let (more, less) = (make(h), make(-h));
+            let (mut low, mut high) = (0.0, 0.0);
+            for i in 0..4 {
+                let middle = value(&base.contacts[i], &base.frame, &u);
+                let change = value(&more.contacts[i], &more.frame, &u) - value(&less.contacts[i], &less.frame, &u);
+                let change = change / (2.0 * h) / answer.gauge;
+                if middle.abs() < 0.05 {
+                    (low, high) = (low + f64::min(change, 0.0), high + f64::max(change, 0.0));
+                } else if middle > 0.0 {
+                    (low, high) = (low + change, high + change);
+                }
+            }
+            assert!(
+                found > low - 0.08 * d && found < high + 0.08 * d,
+                "{round} {what}: {found} not in {low} {high}, d = {d}"
+            );
         };
         let rough = |s: f64| {
             let c = list
@@ -528,14 +572,15 @@ fn derivatives_of_a_grasp() {
                 .map(|c| Contact::new(*c.position(), *c.normal(), Friction::Soft { mu: 0.6 + s, mus: 0.3 }).unwrap());
             Grasp::new(c.collect(), 1.0, Norm::LInf)
         };
-        near(chained(&rough), differ(&rough), "friction");
+        chained(&rough, differ(&rough), "friction");
         let moved = |s: f64| {
             let mut c = list.clone();
             c[0] =
                 Contact::new(c[0].position() + Vector::from([0.0, 0.0, s]), *c[0].normal(), c[0].friction()).unwrap();
             Grasp::new(c, 1.0, Norm::LInf)
         };
-        near(chained(&moved), differ(&moved), "position");
+        chained(&moved, differ(&moved), "position");
     }
-    assert!(compared >= 2);
+    println!("{compared} compared");
+    assert!(compared >= 4);
 }

@@ -9,7 +9,7 @@ use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment};
-use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Rigid, Sphere, Sum, Support};
+use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Options, Outcome, Real, Vector};
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -322,4 +322,18 @@ fn an_iteration_limit_in_the_middle_of_a_cone() {
             best = best.max(seen.lower);
         }
     }
+}
+
+/// The first vertex was the origin itself, so nothing was known of A's size; whatever had no progress along an axis was taken for flat
+/// without a look at the other side.
+#[test]
+fn a_first_vertex_in_the_origin() {
+    let points = [[0.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]];
+    let set = Points::new(&points).unwrap();
+    let mut memory = Memory::new::<f64, 3>(64, 128);
+    let answer = memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &brisk());
+    assert_eq!((answer.outcome, answer.dimension), (Outcome::Touching, 3), "{:?}", Seen::from(&answer));
+    // In the plane x = 0, its projection has the origin deep inside.
+    let answer = memory.solver::<f64, 3>().solve_in_span(&set, &Ball::unit(), &brisk());
+    assert!(answer.lower <= 0.0 && 0.0 <= answer.upper, "{:?}", Seen::from(&answer));
 }

@@ -35,7 +35,7 @@
 
 use super::cone::Cone;
 use super::expansion::Expanded;
-use super::shoot::descend;
+use super::shoot::{Shot, descend, shoot};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::polytope::{Facet, Insertion};
@@ -99,7 +99,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 found.stop = stop;
                 Ok(())
             }
-            None => self.passes(query, &mut found),
+            None => self.passes(query, &mut found).and_then(|()| touch(query, &mut found)),
         });
         Some(searched.map(|()| found))
     }
@@ -130,7 +130,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let mut gap = first_gap(query);
         loop {
             let is_last = query.level(gap, T::zero()) >= query.level(T::zero(), T::zero());
-            let pass = match self.pass(query, gap, skipped)? {
+            // The last one has room for what rounding takes of the lower bound.
+            let level = if is_last { gap * T::of(0.25) } else { gap };
+            let pass = match self.pass(query, level, skipped)? {
                 Ok(pass) => pass,
                 Err(stop) => {
                     found.stop = stop;
@@ -216,6 +218,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             }
             if query.is_below() {
                 return Ok(End::Stopped(Stop::Below));
+            }
+            if query.is_at_zero() {
+                return Ok(End::Stopped(Stop::Rounding));
             }
             let tolerance = self.polytope.resolution();
             if height - offset <= tolerance {
@@ -315,6 +320,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         best
     }
+}
+
+/// The points of A around the one that dQ touches along the best direction, with their weights: the simplex that the ray to it
+/// pierces. (A cone's lowest facet may belong to another direction, and some of its points are at infinity.)
+fn touch<T: Real, const N: usize>(query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
+    if matches!(found.stop, Stop::Met | Stop::Rounding)
+        && let Some(target) = query.mapping(&query.direction)
+    {
+        let (ray, shot) = shoot(query, &target, None, T::of(1e-9).at_least(query.options.relative), |_| T::HUGE)?;
+        if matches!(shot, Shot::Hit) && ray.reach().is_some() {
+            found.witness = ray.simplex();
+        }
+    }
+    Ok(())
 }
 
 /// The gap asked for, times a power that makes it a first one.

@@ -48,11 +48,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         enough.at_most(self.ratio - self.ratio * gap)
     }
 
-    /// So many margins, as a difference of d. (A Q of no known inner radius: as if it were one of its own size.)
+    /// So many margins, as a difference of d. (A Q of no known inner radius: as wide as it is along the best direction.)
     pub fn reserve(&self, margins: usize) -> T {
         let inner = self.inner_radius();
         let margin = T::count(margins) * self.margin();
-        if inner > T::zero() { margin / inner } else { self.ratio * (margin / self.reach.at_least(T::TINY)) }
+        margin / if inner > T::zero() { inner } else { self.gauge.at_least(T::TINY) }
     }
 
     /// Is d certainly below the threshold?
@@ -105,6 +105,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Is this bracket as narrow as asked for?
     pub fn is_met(&self, bracket: &Bracket<T>) -> bool {
         self.tolerance(T::one()).met(bracket)
+    }
+
+    /// Has an upper bound come so near to 0 that the bracket would be narrow were the origin only in A?
+    pub fn is_at_zero(&self) -> bool {
+        self.is_tight(&Bracket { lower: self.lower_from_distance(T::zero()), upper: self.upper() })
     }
 
     /// Is this bracket about as narrow as rounding allows?
