@@ -107,9 +107,9 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         self.tolerance(T::one()).met(bracket)
     }
 
-    /// Has an upper bound come so near to 0 that the bracket would be narrow were the origin only in A?
+    /// Has a height of A come so near to 0 that rounding is all that is left to say of it?
     pub fn is_at_zero(&self) -> bool {
-        self.is_tight(&Bracket { lower: self.lower_from_distance(T::zero()), upper: self.upper() })
+        self.height + self.bounds.radius <= self.margin() * T::count(64)
     }
 
     /// Is this bracket about as narrow as rounding allows?
