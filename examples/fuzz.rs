@@ -28,7 +28,7 @@ use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
-use qdist::{Options, Outcome, Real, Vector};
+use qdist::{Options, Outcome, Plan, Real, Vector};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -153,10 +153,11 @@ fn random_options<T: Real, const N: usize>(dice: &mut Dice, size: f64, around: O
 }
 
 fn random_capacity<const N: usize>(dice: &mut Dice) -> (usize, usize) {
-    match dice.below(4) {
+    match dice.below(5) {
         0 => (N + 1 + dice.below(4), 2 * N + dice.below(10)),
         1 => (N + 1 + dice.below(60), 2 * N + dice.below(600)),
         2 => (N + 1 + dice.below(1000), 2 * N + dice.below(30)),
+        3 => (3 * N + dice.below(40), 4 * N + dice.below(100)), // cones
         _ => (256, if N <= 3 { 512 } else { 4096 }),
     }
 }
@@ -715,15 +716,31 @@ fn run_general<T: Real, const N: usize>(
         } else {
             (random_options::<T, N>(dice, size, None), random_capacity::<N>(dice))
         };
-        if N > 4 && options.max_iterations == 0 {
-            options.max_iterations = 60;
+        // Cones go on for as long as they may.
+        if options.max_iterations == 0 {
+            options.max_iterations = match N {
+                2 | 3 => 3000,
+                _ => dice.pick(&[60, 60, 300, 1500]),
+            };
         }
+        // Now and then it is a deadline that ends the run.
+        let (asked, deadline) = (Cell::new(0), dice.below(400));
+        let interrupt = || {
+            asked.set(asked.get() + 1);
+            asked.get() > deadline
+        };
+        let interrupt: Option<&dyn Fn() -> bool> = if run > 0 && dice.chance(0.3) { Some(&interrupt) } else { None };
         let mut memory = Memory::new::<T, N>(vertices, facets);
-        let answer = set.with::<T, _>(|a| gauge.with::<T, _>(|q| memory.solver::<T, N>().solve(a, q, &options)));
+        let answer = set
+            .with::<T, _>(|a| gauge.with::<T, _>(|q| memory.solver::<T, N>().solve_until(a, q, &options, interrupt)));
         let seen = Seen::from(&answer);
         let tell = format!(
-            "run {run}, N = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, {options:?}\n{seen:?}\ndirection {:?}",
+            "run {run}, N = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, {options:?}, deadline {:?}\n{seen:?} {:?}, {} cones, {} splits\ndirection {:?}",
             T::ROUNDOFF.to_f64(),
+            interrupt.map(|_| deadline),
+            answer.plan,
+            answer.cones,
+            answer.splits,
             answer.direction
         );
         if let Some(text) = broken_promise(&seen, &options, vertices, facets) {
@@ -731,6 +748,9 @@ fn run_general<T: Real, const N: usize>(
         }
         if seen.outcome == Outcome::SupportFailed {
             find("built-in sets failed", &tell);
+        }
+        if seen.outcome == Outcome::Interrupted && interrupt.is_none() {
+            find("interrupted by nobody", &tell);
         }
         let bounded = seen.upper < T::HUGE.to_f64();
         let n: [f64; N] = std::array::from_fn(|i| answer.direction[i].to_f64());
@@ -892,7 +912,7 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
             find("NaN or an empty bracket from bad callbacks", &format!("{seen:?}"));
         }
     }
-    if seen.iterations as usize > vertices + 300 {
+    if seen.iterations as usize > vertices + 300 && matches!(answer.plan, Plan::Expansion | Plan::Distance) {
         find("more iterations than vertices and steps", &format!("{seen:?}"));
     }
     if (seen.failure != 0) != (seen.outcome == Outcome::SupportFailed) {

@@ -78,16 +78,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             Err(failure) => return self.give_up(query, failure),
         };
         if let Some(rays) = rays {
-            // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
-            let open = matches!(rays.stop, Stop::Rounding | Stop::Iterations | Stop::Interrupted);
-            if open
-                && let Ok(Opening { expanded: Ok(expanded), near }) = self.open(query)
-                && self.polytope.lower(query, expanded.key).is_some_and(|lower| lower > rays.lower)
-            {
-                return self.conclude(query, expanded, near);
-            }
             query.plan = Plan::Rays;
-            return query.answer(rays.stop, rays.lower, rays.witness);
+            match rays.stop {
+                // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
+                Stop::Rounding => query.plan = Plan::Expansion,
+                Stop::Iterations | Stop::Interrupted => {}
+                stop => return query.answer(stop, rays.lower, rays.witness),
+            }
+            query.raise(rays.lower);
         }
         match self.open(query) {
             Ok(Opening { expanded: Ok(expanded), near }) if expanded.stop == Stop::Capacity => {
@@ -159,20 +157,26 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         expanded: Expanded<T>,
         floor: Option<Nearest<T, N>>,
     ) -> Answer<T, N> {
+        // What the search stores are images of A's points in its cones. Until it has a bound, those stored before are what is known.
+        let known = self.polytope.lower(query, expanded.key).is_some();
+        let floor = if known { floor } else { self.nearest_stored(query, floor) };
         let Some(cones) = self.polytope.conewise(query, &expanded) else {
             return self.conclude(query, expanded, floor);
         };
+        query.plan = Plan::Cones;
         match cones {
+            Ok(found) if found.stop == Stop::Outside || found.lower <= -T::HUGE => {
+                self.polytope.forget();
+                self.conclude(query, Expanded { stop: found.stop, key: -T::HUGE, facet: None }, floor)
+            }
             Ok(found) => {
-                query.plan = Plan::Cones;
-                if found.stop == Stop::Outside || found.lower <= -T::HUGE {
-                    let expanded = Expanded { stop: found.stop, key: -T::HUGE, facet: None };
-                    return self.conclude(query, expanded, floor);
-                }
                 let answer = self.report(query, found.stop, found.lower, found.witness);
                 Answer { cones: found.cones, splits: found.splits, ..answer }
             }
-            Err(failure) => self.give_up(query, failure),
+            Err(failure) => {
+                self.polytope.forget();
+                self.lower_by_vertices(query, Stop::Failed(failure.0), floor)
+            }
         }
     }
 
@@ -220,8 +224,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
-        if !apart && self.polytope.peak_facets() > 0 {
+        if !apart && self.polytope.facets().next().is_some() {
             if let Err(failure) = self.polytope.widen(query, stop, key) {
+                return self.give_up(query, failure);
+            }
+            if let Err(failure) = self.meet_rival(query) {
                 return self.give_up(query, failure);
             }
             if let Some(lower) = self.polytope.lower(query, key) {
@@ -236,6 +243,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
                 Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {
+                    let near = floor.into_iter().fold(near, |a, b| if b.distance < a.distance { b } else { a });
                     return self.lower_by_vertices(query, stop, Some(near));
                 }
                 Ok((end, near)) => {
@@ -252,15 +260,34 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
     /// the point that was nearest before.
     fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
-        let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
-        let stored = cloud.nearest(&query.first_direction());
-        match stored.into_iter().chain(floor).reduce(|a, b| if b.distance < a.distance { b } else { a }) {
+        match self.nearest_stored(query, floor) {
             Some(near) => {
                 let lower = query.lower_from_distance(near.distance);
                 self.report(query, stop, lower, near.simplex)
             }
             None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),
         }
+    }
+
+    /// Facets that tie with the lowest are never pushed out. The lowest of those far from the best direction, if it ties, is asked for
+    /// once: a minimiser of its own?
+    fn meet_rival(&self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
+        if let Some(best) = query.lonely() {
+            let far = self.polytope.facets().filter(|f| query.is_far(&f.normal, &best));
+            let lowest = far.reduce(|low, f| if f.key < low.key { f } else { low });
+            if let Some(facet) = lowest.filter(|f| query.ties(f.key)) {
+                let normal = facet.normal;
+                query.support(&normal)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The point nearest to the origin of those that are known: the stored vertices' hull, and one from before.
+    fn nearest_stored(&self, query: &Query<'_, T, N>, before: Option<Nearest<T, N>>) -> Option<Nearest<T, N>> {
+        let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
+        let stored = cloud.nearest(&query.first_direction());
+        stored.into_iter().chain(before).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }
 
     pub(crate) fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {

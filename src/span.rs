@@ -196,7 +196,8 @@ fn span<T: Real, const N: usize>(
     while start.missing() > 0 {
         let direction = start.direction();
         let mut point = query.support(&direction).ok()?.0.point;
-        if start.progress(&direction, &point) < query.reach() * T::of(0.01) {
+        // (The first point may be the origin, and the reach 0.)
+        if start.progress(&direction, &point) <= query.reach() * T::of(0.01) {
             let other = query.support(&-direction).ok()?.0.point;
             if start.progress(&direction, &other) > start.progress(&direction, &point) {
                 point = other;

@@ -8,8 +8,8 @@ use common::exact::pair_value;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, Gauge, Segment};
-use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Rigid, Sphere, Sum, Support};
+use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment};
+use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Options, Outcome, Real, Vector};
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -281,4 +281,59 @@ fn an_ellipsoid_alone_is_its_least_semi_axis() {
         let seen = Seen::from(&memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &options));
         assert!(seen.lower <= semi[0] && semi[0] <= seen.upper, "{semi:?} {seen:?}");
     }
+}
+
+/// Two soft fingers on the x axis (Table I of the paper).
+struct TwoFingers;
+
+impl Support<f64, 6> for TwoFingers {
+    fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+        let mut sum = Vector::<f64, 6>::zeros();
+        for (x, s) in [(-0.75, 1.0), (1.3, -1.0)] {
+            let g = [u[1] + x * u[5], u[2] - x * u[4], s * u[3]];
+            let length = 0.2 * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+            if s * u[0] + length > 0.0 {
+                let f = g.map(|x| if length > 0.0 { 0.04 * x / length } else { 0.0 });
+                sum += Vector::from([s, f[0], f[1], s * f[2], -x * f[1], x * f[0]]);
+            }
+        }
+        Ok(sum)
+    }
+    fn extent(&self) -> f64 {
+        3.0
+    }
+}
+
+/// Cut short before any pass over the cones was complete, and before the first polytope had the origin inside: the polytope of the
+/// cone in work was taken for that of A, and its lower bound for one of d (0.2349 for 0.2236, `Converged`).
+#[test]
+fn an_iteration_limit_in_the_middle_of_a_cone() {
+    let q = EllipsoidGauge::new(Vector::from([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]), SMatrix::identity()).unwrap();
+    let d = 0.41 / (4.0 * 0.1681f64 + 1.69 + 1.0).sqrt();
+    for size in [(18, 24), (20, 30), (24, 40)] {
+        let mut best = f64::MIN;
+        for limit in 1..400 {
+            let options = Options { max_iterations: limit, relative: 1e-3, ..Options::default() };
+            let mut memory = Memory::new::<f64, 6>(size.0, size.1);
+            let seen = Seen::from(&memory.solver::<f64, 6>().solve(&TwoFingers, &q, &options));
+            assert!(seen.lower <= d && d <= seen.upper, "{size:?} {limit}: {seen:?}");
+            // What the first polytope has shown is not forgotten.
+            assert!(seen.lower >= best - 1e-12, "{size:?} {limit}: {best} before, {seen:?}");
+            best = best.max(seen.lower);
+        }
+    }
+}
+
+/// The first vertex was the origin itself, so nothing was known of A's size; whatever had no progress along an axis was taken for flat
+/// without a look at the other side.
+#[test]
+fn a_first_vertex_in_the_origin() {
+    let points = [[0.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]];
+    let set = Points::new(&points).unwrap();
+    let mut memory = Memory::new::<f64, 3>(64, 128);
+    let answer = memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &brisk());
+    assert_eq!((answer.outcome, answer.dimension), (Outcome::Touching, 3), "{:?}", Seen::from(&answer));
+    // In the plane x = 0, its projection has the origin deep inside.
+    let answer = memory.solver::<f64, 3>().solve_in_span(&set, &Ball::unit(), &brisk());
+    assert!(answer.lower <= 0.0 && 0.0 <= answer.upper, "{:?}", Seen::from(&answer));
 }

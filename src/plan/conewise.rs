@@ -32,7 +32,6 @@
 //! Neither convexity of the surface nor the accuracy of c_F is used, nor that the origin is inside A: it is when λ > 0. As in
 //! [`bounds`](crate::bounds), λQ stands for λQ + mB where heights are known up to m; here m counts three times (|c|_1 <= sqrt(6) |c|), and
 //! once more for each halving (module `cone`).
-
 //!
 //! # What was tried and lost
 //!
@@ -43,7 +42,7 @@
 
 use super::cone::Cone;
 use super::expansion::Expanded;
-use super::shoot::descend;
+use super::shoot::{Shot, descend, shoot};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::polytope::{Facet, Insertion, Polytope};
@@ -107,7 +106,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 found.stop = stop;
                 Ok(())
             }
-            None => self.passes(query, &mut found),
+            None => self.passes(query, &mut found).and_then(|()| touch(query, &mut found)),
         });
         Some(searched.map(|()| found))
     }
@@ -142,7 +141,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         let mut gap = first_gap(query, narrowing);
         loop {
             let is_last = query.level(gap, T::zero()) >= query.level(T::zero(), T::zero());
-            let pass = match self.pass(query, gap, skipped)? {
+            // The last one has room for what rounding takes of the lower bound.
+            let level = if is_last { gap * T::of(0.25) } else { gap };
+            let pass = match self.pass(query, level, skipped)? {
                 Ok(pass) => pass,
                 Err(stop) => {
                     found.stop = stop;
@@ -229,6 +230,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             }
             if query.is_below() {
                 return Ok(End::Stopped(Stop::Below));
+            }
+            if query.is_at_zero() {
+                return Ok(End::Stopped(Stop::Rounding));
             }
             let tolerance = self.resolution();
             if height - offset <= tolerance {
@@ -328,6 +332,20 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         }
         best
     }
+}
+
+/// The points of A around the one that dQ touches along the best direction, with their weights: the simplex that the ray to it
+/// pierces. (A cone's lowest facet may belong to another direction, and some of its points are at infinity.)
+fn touch<T: Real, const N: usize>(query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
+    if matches!(found.stop, Stop::Met | Stop::Rounding)
+        && let Some(target) = query.mapping(&query.direction)
+    {
+        let (ray, shot) = shoot(query, &target, None, T::of(1e-9).at_least(query.options.relative), |_| T::HUGE)?;
+        if matches!(shot, Shot::Hit) && ray.reach().is_some() {
+            found.witness = ray.simplex();
+        }
+    }
+    Ok(())
 }
 
 /// The gap asked for, times a power of `narrowing` that makes it a first one.

@@ -139,7 +139,8 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
                 return Ok(Some(Stop::Outside));
             }
-            if start.progress(&direction, &vertex.point) < query.reach() * T::of(0.01) {
+            // (The first point may be the origin, and the reach 0.)
+            if start.progress(&direction, &vertex.point) <= query.reach() * T::of(0.01) {
                 let (other, height) = query.support(&-direction)?;
                 if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
                     return Ok(Some(Stop::Outside));

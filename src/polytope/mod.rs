@@ -162,6 +162,13 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.reach = T::zero();
     }
 
+    /// Forgets everything but how much memory was used.
+    pub fn forget(&mut self) {
+        let (peak, peak_vertices) = (self.peak, self.peak_vertices());
+        self.reset();
+        (self.peak, self.peak_vertices) = (peak, peak_vertices);
+    }
+
     pub fn vertices(&self) -> &[Vertex<T, N>] {
         self.vertices.get(self.rays..self.vertex_count).unwrap_or(&[])
     }

@@ -13,9 +13,7 @@ use crate::simplex::Vertex;
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Starts anew with the region below one point: N facets, fresh, and the one at infinity.
     pub fn make_orthant(&mut self, apex: Vertex<T, N>) -> Option<()> {
-        let (peak, peak_vertices) = (self.peak, self.peak_vertices());
-        self.reset();
-        (self.peak, self.peak_vertices) = (peak, peak_vertices);
+        self.forget();
         for _ in 0..N {
             self.add_vertex(Vertex::empty())?;
         }

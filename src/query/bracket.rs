@@ -43,16 +43,16 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// A lower end that would end the query now, `reserve` included; at least a share `gap` below the upper end.
     pub fn level(&self, gap: T, reserve: T) -> T {
-        let met = self.tolerance(T::of(0.99)).below(self.ratio) + reserve;
+        let met = self.tolerance(Self::sharpness() * T::of(0.99)).below(self.ratio) + reserve;
         let enough = self.options.threshold.map_or(met, |threshold| met.at_most(threshold + reserve));
         enough.at_most(self.ratio - self.ratio * gap)
     }
 
-    /// So many margins, as a difference of d. (A Q of no known inner radius: as if it were one of its own size.)
+    /// So many margins, as a difference of d. (A Q of no known inner radius: as wide as it is along the best direction.)
     pub fn reserve(&self, margins: usize) -> T {
         let inner = self.inner_radius();
         let margin = T::count(margins) * self.margin();
-        if inner > T::zero() { margin / inner } else { self.ratio * (margin / self.reach.at_least(T::TINY)) }
+        margin / if inner > T::zero() { inner } else { self.gauge.at_least(T::TINY) }
     }
 
     /// Is d certainly below the threshold?
@@ -105,6 +105,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Is this bracket as narrow as asked for?
     pub fn is_met(&self, bracket: &Bracket<T>) -> bool {
         self.tolerance(T::one()).met(bracket)
+    }
+
+    /// Has a height of A come so near to 0 that rounding is all that is left to say of it?
+    pub fn is_at_zero(&self) -> bool {
+        self.height + self.bounds.radius <= self.margin() * T::count(64)
     }
 
     /// Is this bracket about as narrow as rounding allows?

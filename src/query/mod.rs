@@ -181,8 +181,13 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Tells the query a lower bound of d that holds anyway, in the caller's units. (Positive ones end it earlier.)
     pub fn know(&mut self, lower: T) {
         if lower > T::zero() && lower < T::HUGE {
-            self.floor = lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF;
+            self.raise(lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF);
         }
+    }
+
+    /// The same in scaled units.
+    pub fn raise(&mut self, lower: T) {
+        self.floor = self.floor.at_least(lower);
     }
 
     /// The direction to look in first.
@@ -267,16 +272,30 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Keeps a direction that bounds d about as well as the best, well away from that.
     #[inline]
     fn meet(&mut self, direction: &Vector<T, N>, ratio: T, best: &Vector<T, N>) {
-        if ratio <= self.rivalry && direction.dot(best) < T::of(RIVAL_COSINE) {
+        if self.ties(ratio) && self.is_far(direction, best) {
             self.rival = Some((*direction, ratio));
         }
+    }
+
+    /// Does a quotient tie with the best, up to the tolerance?
+    pub fn ties(&self, ratio: T) -> bool {
+        ratio <= self.rivalry
+    }
+
+    /// Are two directions no two guesses at the same minimiser?
+    pub fn is_far(&self, u: &Vector<T, N>, v: &Vector<T, N>) -> bool {
+        u.dot(v) < T::of(RIVAL_COSINE)
+    }
+
+    /// The best direction, where rivals are sought and none is known.
+    pub fn lonely(&self) -> Option<Vector<T, N>> {
+        (self.seeks_rivals && self.rival().is_none()).then_some(self.direction)
     }
 
     /// A direction well away from the best one that bounds d as tightly, up to the tolerance.
     fn rival(&self) -> Option<Vector<T, N>> {
         let (direction, ratio) = self.rival?;
-        let apart = direction.dot(&self.direction) < T::of(RIVAL_COSINE);
-        (apart && ratio <= self.rivalry).then_some(direction)
+        (self.is_far(&direction, &self.direction) && self.ties(ratio)).then_some(direction)
     }
 
     fn gauge(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
