@@ -4,6 +4,7 @@
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
 
+use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
 use crate::support::{Failure, Support};
@@ -95,6 +96,12 @@ impl<T: Real, const N: usize> Cloud<'_, T, N> {
 pub struct Inflated<'a, T, const N: usize>(pub &'a dyn Support<T, N>);
 
 impl<T: Real, const N: usize> Inflated<'_, T, N> {
+    /// The set to ask and the ball term to add at the end: the core and its radius where Q is a ball, else the inflated set and none.
+    pub fn for_gauge(&self, q: &dyn Gauge<T, N>) -> (&dyn Support<T, N>, T) {
+        let radius = self.0.radius();
+        if q.ball_radius().is_none() && radius > T::zero() { (self, T::zero()) } else { (self.0, radius) }
+    }
+
     fn ball(&self, u: &Vector<T, N>) -> Vector<T, N> {
         u * (self.0.radius() / norm(u))
     }

@@ -59,11 +59,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
-        let (mut query, checked) = if q.ball_radius().is_none() && a.radius() > T::zero() {
-            Query::new(&inflated, q, T::zero(), *options)
-        } else {
-            Query::new(a, q, a.radius(), *options)
-        };
+        let (set, radius) = inflated.for_gauge(q);
+        let (mut query, checked) = Query::new(set, q, radius, *options);
         query.interrupt = interrupt;
         if let Err(failure) = checked.and_then(|()| query.normalize()) {
             return self.give_up(&mut query, failure);
@@ -105,10 +102,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
-        if q.ball_radius().is_none() && a.radius() > T::zero() {
-            return self.expand_only(Query::new(&Inflated(a), q, T::zero(), *options));
-        }
-        self.expand_only(Query::new(a, q, a.radius(), *options))
+        let inflated = Inflated(a);
+        let (set, radius) = inflated.for_gauge(q);
+        self.expand_only(Query::new(set, q, radius, *options))
     }
 
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {

@@ -112,11 +112,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
-        let (mut query, checked) = if q.ball_radius().is_none() && a.radius() > T::zero() {
-            Query::new(&inflated, q, T::zero(), *options)
-        } else {
-            Query::new(a, q, a.radius(), *options)
-        };
+        let (set, radius) = inflated.for_gauge(q);
+        let (mut query, checked) = Query::new(set, q, radius, *options);
         query.interrupt = interrupt;
         let lower = tracker.lower_after(moved, q);
         let answer = match checked.and_then(|()| query.normalize()).and_then(|()| at_once(&mut query, tracker, lower)) {
