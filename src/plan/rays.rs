@@ -20,7 +20,7 @@ use super::shoot::{Shot, shoot};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::query::Query;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, finite};
 use crate::simplex::Simplex;
 use crate::support::Failure;
 
@@ -86,6 +86,12 @@ fn shoot_all<T: Real, const N: usize>(
     let mut last: Option<Ray<T, N>> = None;
     for index in 0..count {
         let target = query.ray(index);
+        if !finite(&target) {
+            return Err(Failure(crate::NOT_FINITE));
+        }
+        if target.iter().all(|&x| x == T::zero()) {
+            continue; // The origin is in A whenever d >= 0.
+        }
         let (ray, shot) =
             shoot(query, &target, last.take(), T::zero(), |query| query.level(gap, reserve + query.reserve(4)))?;
         if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
@@ -107,7 +113,7 @@ struct Rays<T, const N: usize> {
 
 impl<T: Real, const N: usize> Rays<T, N> {
     fn take(&mut self, ray: &Ray<T, N>) -> bool {
-        let Some((t, miss)) = ray.reach() else { return false };
+        let Some((t, miss)) = ray.reach().filter(|(t, miss)| t.finite() && miss.finite()) else { return false };
         self.error = self.error.at_least(miss);
         if t < self.least {
             self.least = t;
