@@ -93,6 +93,7 @@ impl<T: Real, const N: usize> Ray<T, N> {
         if pivot < largest * T::ROUNDOFF.root() {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
         }
+        let mut row = Vector::<T, N>::zeros();
         for i in 0..N {
             if i == out {
                 let pivot = T::one() / shares[i];
@@ -101,10 +102,10 @@ impl<T: Real, const N: usize> Ray<T, N> {
                 self.weights[i] = step;
                 for j in 0..N {
                     self.inverse[(i, j)] *= pivot;
+                    row[j] = self.inverse[(i, j)];
                 }
             }
         }
-        let row = self.inverse.row(out.min(N - 1)).into_owned();
         for i in 0..N {
             if i != out {
                 self.weights[i] = (self.weights[i] - shares[i] * step).at_least(T::zero());

@@ -17,6 +17,7 @@ use crate::simplex::{Corner, Simplex, Vertex};
 use crate::solver::Solver;
 use crate::start::Start;
 use crate::support::{Failure, Support};
+use heapless::Vec;
 use nalgebra::SMatrix;
 
 /// A set or a gauge seen in a subspace.
@@ -163,10 +164,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
 /// The answer in space.
 fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis: &SMatrix<T, N, K>) -> Answer<T, N> {
-    let corners = answer.witness.corners.iter().map(|corner| Corner {
-        vertex: Vertex { point: basis * corner.vertex.point, witness: basis * corner.vertex.witness },
-        weight: corner.weight,
-    });
+    let mut corners = Vec::new();
+    for corner in &answer.witness.corners {
+        let vertex = Vertex { point: basis * corner.vertex.point, witness: basis * corner.vertex.witness };
+        let _ = corners.push(Corner { vertex, weight: corner.weight });
+    }
     Answer {
         outcome: answer.outcome,
         lower: answer.lower,
@@ -176,7 +178,7 @@ fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis
         gauge: answer.gauge,
         rival: answer.rival.map(|rival| basis * rival),
         plan: answer.plan,
-        witness: Simplex { corners: corners.collect() },
+        witness: Simplex { corners },
         dimension: answer.dimension,
         iterations: answer.iterations,
         support_calls: answer.support_calls,

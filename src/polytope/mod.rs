@@ -141,6 +141,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     }
 
     /// The memory: vertices, facets and queue.
+    #[allow(clippy::type_complexity)]
     pub fn memory(&mut self) -> (&mut [Vertex<T, N>], &mut [Facet<T, N>], &mut [Entry<T>]) {
         (self.vertices, self.facets, self.heap.memory())
     }

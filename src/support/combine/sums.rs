@@ -186,7 +186,8 @@ mod tests {
                 let flip = |v: Vector<f64, 3>| Vector::from_fn(|i, _| if signs >> i & 1 == 1 { -v[i] } else { v[i] });
                 for _ in 0..if mirrored { 20 } else { 0 } {
                     let u = dice.vector();
-                    let (here, there) = (set.support(&u).unwrap().dot(&u), set.support(&flip(u)).unwrap().dot(&flip(u)));
+                    let (here, there) =
+                        (set.support(&u).unwrap().dot(&u), set.support(&flip(u)).unwrap().dot(&flip(u)));
                     assert!((here - there).abs() < 1e-14, "{k} {signs}");
                 }
             }
