@@ -534,8 +534,9 @@ static void Q(plans)(void) {
     own.value = Q(cube_value), own.user = &w, own.inner_radius = 1;
     own.vertex = Q(cube_vertex), own.vertex_count = 64, own.point = Q(cube_point);
     CHECK(SOLVE(&own) == QDIST_OK && IS(1 / sqrt(2.45)) && result.plan == QDIST_PLAN_RAYS);
-    own.inner_radius = 0;
+    own.inner_radius = 0, set.extent = 0, own.extent = 0; /* nothing is known of the sizes */
     CHECK(SOLVE(&own) == QDIST_OK && IS(1 / sqrt(2.45)) && result.plan == QDIST_PLAN_RAYS);
+    set.extent = (REAL)2.5;
     for (w.bad = 1; w.bad <= 2; ++w.bad) {
         CHECK(SOLVE(&own) == QDIST_ERROR_CALLBACK && result.outcome == QDIST_SUPPORT_FAILED);
         CHECK(result.callback_code == (w.bad == 1 ? 99 : QDIST_CALLBACK_NONFINITE));

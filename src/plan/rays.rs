@@ -43,6 +43,10 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
     if count == 0 {
         return Ok(None);
     }
+    if !(query.size() > T::zero()) {
+        let first = query.first_direction();
+        query.support(&first)?; // A does not know its extent: the first corners need a size.
+    }
     let mut reserve = T::zero();
     let mut found: Option<Crossings<T, N>> = None;
     for gap in [T::of(FIRST_GAP), T::zero(), T::zero()] {
