@@ -570,8 +570,8 @@ typedef int32_t (*qdist_gauge_point_f64)(void *user, const double *direction, do
 // does. Coordinates that are not finite end it too.
 typedef int32_t (*qdist_gauge_vertex_f64)(void *user, uint32_t index, double *point);
 
-// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be true, or the
-// bracket is not.
+// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+// true, or the bracket is not.
 typedef struct {
     qdist_gauge_value_f64 value;
     // Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
@@ -587,7 +587,7 @@ typedef struct {
     double extent;
     // Above 0: Q is the ball of this radius around the origin, and no function is used. Balls swept over A are then exact.
     double ball_radius;
-    // Radius of a ball around the origin that Q contains. qdist_solve_warm needs it for what moves.
+    // Radius of a ball around the origin that Q contains. Without, qdist_solve_warm knows no lower bound once A has moved.
     double inner_radius;
     // How many points `vertex` knows.
     uint32_t vertex_count;
@@ -672,20 +672,19 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  *
  * The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
  *
- * qdist_solve chooses a plan by what the query is (QDIST_PLAN, told in the result). With at least 3 * dimension vertices and
- * 4 * dimension facets it converges in any memory, the sooner the more there is: 64 KB do for a relative 1e-3 in
- * dimension 6. Beyond that, only max_iterations and `interrupt` bound the work.
+ * qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
+ * 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
+ * `interrupt`.
  *
- * The gradient of d. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
- * gives the derivative with respect to any parameter p of A or Q from quantities of the result alone:
+ * The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
+ * gives the derivative with respect to any parameter p of A or Q from quantities of the result:
  *
  *     dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
  *
- * with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). For A translated by t
- * that is direction / gauge; for A = sum or hull of parts, only the points of the parts that make up `support` count. Where A has a
- * face there, the velocity is the mean of those of `points` with `weights`. It is exact up to about the square root of the
- * bracket's relative width. With has_rival the minimiser is not unique: d then has one-sided derivatives, the least of those
- * at all minimisers. */
+ * with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
+ * there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+ * It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
+ * one-sided derivatives, each the least of those at all minimisers. */
 
 // How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 // relative must not both be 0.
@@ -736,7 +735,8 @@ typedef struct {
     uint32_t iterations;
     // Calls of each body's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    // QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
     // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -777,7 +777,8 @@ typedef struct {
     uint32_t iterations;
     // Calls of A's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    // QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
     // With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.
@@ -898,7 +899,7 @@ typedef struct {
     // sizeof(qdist_tracker_f64).
     uint32_t struct_size;
     uint32_t dimension;
-    // d of the last set is not less; -DBL_MAX: not known.
+    // d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.
     double lower;
     // Unit vectors, the last minimiser first; unused ones are 0.
     double directions[4][6];
@@ -907,8 +908,8 @@ typedef struct {
 // Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
 qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimension);
 
-// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX: none, since nothing is remembered, or Q
-// has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
+// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
 qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
                                            const qdist_gauge_f64 *q,
                                            double moved,

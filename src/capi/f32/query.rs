@@ -8,20 +8,19 @@
 //!
 //! The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
 //!
-//! qdist_solve chooses a plan by what the query is (QDIST_PLAN, told in the result). With at least 3 * dimension vertices and
-//! 4 * dimension facets it converges in any memory, the sooner the more there is: 64 KB do for a relative 1e-3 in
-//! dimension 6. Beyond that, only max_iterations and `interrupt` bound the work.
+//! qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
+//! 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
+//! `interrupt`.
 //!
-//! The gradient of d. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
-//! gives the derivative with respect to any parameter p of A or Q from quantities of the result alone:
+//! The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
+//! gives the derivative with respect to any parameter p of A or Q from quantities of the result:
 //!
 //!     dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
 //!
-//! with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). For A translated by t
-//! that is direction / gauge; for A = sum or hull of parts, only the points of the parts that make up `support` count. Where A has a
-//! face there, the velocity is the mean of those of `points` with `weights`. It is exact up to about the square root of the
-//! bracket's relative width. With has_rival the minimiser is not unique: d then has one-sided derivatives, the least of those
-//! at all minimisers.
+//! with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
+//! there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+//! It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
+//! one-sided derivatives, each the least of those at all minimisers.
 
 use super::super::generic::{
     Deadline, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, known_size, length, padded, shared,
@@ -92,7 +91,8 @@ pub struct qdist_depth_f32 {
     pub iterations: u32,
     /// Calls of each body's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     pub vertices_used: u32,
     pub facets_used: u32,
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -135,7 +135,8 @@ pub struct qdist_result_f32 {
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     pub vertices_used: u32,
     pub facets_used: u32,
     /// With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.

@@ -33,7 +33,7 @@ pub struct qdist_tracker_f32 {
     /// sizeof(qdist_tracker_f32).
     pub struct_size: u32,
     pub dimension: u32,
-    /// d of the last set is not less; -DBL_MAX: not known.
+    /// d of the last set is not less; -FLT_MAX: not known.
     pub lower: f32,
     /// Unit vectors, the last minimiser first; unused ones are 0.
     pub directions: [[f32; 6]; 4],
@@ -52,8 +52,8 @@ pub unsafe extern "C" fn qdist_tracker_init_f32(tracker: *mut qdist_tracker_f32,
     status(fill())
 }
 
-/// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX: none, since nothing is remembered, or Q
-/// has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+/// The certified lower bound of d after A has moved by at most `moved`, without a query; -FLT_MAX where nothing is
+/// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_tracker_lower_after_f32(
     tracker: *const qdist_tracker_f32,

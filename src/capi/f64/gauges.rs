@@ -30,8 +30,8 @@ pub type qdist_gauge_point_f64 =
 /// does. Coordinates that are not finite end it too.
 pub type qdist_gauge_vertex_f64 = Option<unsafe extern "C" fn(user: *mut c_void, index: u32, point: *mut f64) -> i32>;
 
-/// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be true, or the
-/// bracket is not.
+/// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+/// true, or the bracket is not.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_gauge_f64 {
@@ -49,7 +49,7 @@ pub struct qdist_gauge_f64 {
     pub extent: f64,
     /// Above 0: Q is the ball of this radius around the origin, and no function is used. Balls swept over A are then exact.
     pub ball_radius: f64,
-    /// Radius of a ball around the origin that Q contains. qdist_solve_warm needs it for what moves.
+    /// Radius of a ball around the origin that Q contains. Without, qdist_solve_warm knows no lower bound once A has moved.
     pub inner_radius: f64,
     /// How many points `vertex` knows.
     pub vertex_count: u32,
