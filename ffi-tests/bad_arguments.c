@@ -411,12 +411,142 @@ static void spoiled(void) {
     }
 }
 
+/* Gauges of the caller. */
+static double nothing(void *user, const double *u) {
+    (void)user, (void)u;
+    return 0;
+}
+
+static double taxi(void *user, const double *u) {
+    (void)user;
+    return fabs(u[0]) + fabs(u[1]) + fabs(u[2]);
+}
+
+static int32_t no_vertex(void *user, uint32_t index, double *point) {
+    (void)index;
+    point[0] = point[1] = point[2] = *(const double *)user;
+    return 0;
+}
+
+static int32_t silent_vertex(void *user, uint32_t index, double *point) {
+    (void)user, (void)index, (void)point;
+    return 0;
+}
+
+/* Gauges that make no sense. */
+static void wrong_gauges(void) {
+    double value = 0;
+    unsigned k;
+    result.struct_size = sizeof result;
+#define GIVES(expected) CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == (expected))
+    memset(&gauge, 0, sizeof gauge);
+    GIVES(QDIST_ERROR_NULL);
+    gauge.value = nothing; /* the origin alone */
+    GIVES(QDIST_ERROR_ARGUMENT);
+    gauge.extent = 1; /* it says so, but bounds nothing */
+    GIVES(QDIST_OK);
+    CHECK(result.outcome != QDIST_CONVERGED && result.upper == 1.7976931348623157e308);
+    gauge.value = taxi, gauge.user = &value, gauge.vertex_count = 8;
+    GIVES(QDIST_ERROR_NULL); /* no function for the vertices */
+    gauge.extent = 2, gauge.vertex = no_vertex;
+    for (k = 0; k < 3; ++k) {
+        value = BAD[k];
+        GIVES(QDIST_ERROR_CALLBACK);
+        CHECK(result.outcome == QDIST_SUPPORT_FAILED && result.callback_code == QDIST_CALLBACK_NONFINITE);
+    }
+    value = 1e300; /* too large to be a point */
+    GIVES(QDIST_ERROR_CALLBACK);
+    gauge.vertex = silent_vertex;
+    GIVES(QDIST_ERROR_CALLBACK);
+    CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE && result.lower <= 1 && result.upper >= 1);
+    gauge.vertex = no_vertex, value = 0; /* no direction to shoot in */
+    GIVES(QDIST_OK);
+    CHECK(result.lower <= 1 && result.upper >= 1);
+    gauge.vertex_count = 0;
+    for (k = 0; k < 3; ++k) {
+        gauge.inner_radius = BAD[k];
+        GIVES(QDIST_ERROR_NONFINITE);
+    }
+    gauge.inner_radius = -1;
+    GIVES(QDIST_ERROR_ARGUMENT);
+    gauge.inner_radius = 3; /* more than the extent */
+    GIVES(QDIST_ERROR_ARGUMENT);
+    gauge.inner_radius = 1;
+    GIVES(QDIST_OK);
+#undef GIVES
+}
+
+/* Whatever is wrong with a tracker or with `moved`, neither tracker nor result is written. */
+static void warm_starts(void) {
+    qdist_tracker_f64 tracker, good, before;
+    qdist_result_f64 result_before;
+    double lower = 7;
+    unsigned k;
+
+    memset(&tracker, 0x55, sizeof tracker);
+    before = tracker;
+    CHECK(qdist_tracker_init_f64(NULL, 3) == QDIST_ERROR_NULL);
+    CHECK(qdist_tracker_init_f64((qdist_tracker_f64 *)((char *)&tracker + 4), 3) == QDIST_ERROR_ALIGNMENT);
+    for (k = 0; k < 9; k == 1 ? (k = 7) : ++k) CHECK(qdist_tracker_init_f64(&tracker, k) == QDIST_ERROR_DIMENSION);
+    CHECK(memcmp(&tracker, &before, sizeof tracker) == 0);
+    CHECK(qdist_tracker_init_f64(&tracker, 3) == QDIST_OK);
+    memset(&result, 0x55, sizeof result);
+    result.struct_size = sizeof result;
+    memcpy(&result_before, &result, sizeof result);
+#define WARM(moved) qdist_solve_warm3_f64(solver, &tracker, &first.set, NULL, moved, NULL, &result)
+#define REFUSED(change, moved, expected)                                                                  \
+    do {                                                                                                  \
+        good = tracker;                                                                                   \
+        change;                                                                                           \
+        before = tracker;                                                                                 \
+        CHECK(WARM(moved) == (expected));                                                                 \
+        CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, moved, &lower) == (expected) && lower == 7);  \
+        CHECK(memcmp(&tracker, &before, sizeof tracker) == 0);                                            \
+        CHECK(memcmp(&result, &result_before, sizeof result) == 0);                                       \
+        tracker = good;                                                                                   \
+    } while (0)
+    CHECK(qdist_solve_warm3_f64(solver, NULL, &first.set, NULL, 0, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_warm3_f64(NULL, &tracker, &first.set, NULL, 0, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_warm3_f64(solver, &tracker, NULL, NULL, 0, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_warm3_f64(solver, &tracker, &first.set, NULL, 0, NULL, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_warm3_f64(solver, (qdist_tracker_f64 *)((char *)&tracker + 4), &first.set, NULL, 0, NULL, &result) ==
+          QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_tracker_lower_after_f64(NULL, NULL, 0, &lower) == QDIST_ERROR_NULL);
+    CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, 0, NULL) == QDIST_ERROR_NULL);
+    REFUSED(tracker.struct_size = 0, 0, QDIST_ERROR_STRUCT_SIZE);
+    REFUSED(tracker.struct_size = sizeof(qdist_tracker_f32), 0, QDIST_ERROR_STRUCT_SIZE);
+    REFUSED(tracker.dimension = 0, 0, QDIST_ERROR_DIMENSION);
+    REFUSED(tracker.directions[0][0] = 2, 0, QDIST_ERROR_ARGUMENT); /* not of unit length */
+    for (k = 0; k < 3; ++k) {
+        REFUSED((void)0, BAD[k], QDIST_ERROR_NONFINITE);
+        REFUSED(tracker.lower = BAD[k], 0, QDIST_ERROR_NONFINITE);
+        REFUSED(tracker.directions[3][2] = BAD[k], 0, QDIST_ERROR_NONFINITE);
+    }
+    /* Of another dimension. */
+    CHECK(qdist_tracker_init_f64(&tracker, 2) == QDIST_OK && WARM(0) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_tracker_init_f64(&tracker, 3) == QDIST_OK && WARM(-1) == QDIST_OK && result.lower <= 1 && result.upper >= 1);
+    CHECK(WARM(0) == QDIST_OK && result.plan == QDIST_PLAN_WARM && tracker.lower > 0.99 && tracker.lower <= 1);
+    CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, 0.25, &lower) == QDIST_OK && lower > 0.74 && lower <= 0.75);
+    CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, -1, &lower) == QDIST_OK && lower < -1e300);
+
+    CHECK(qdist_solve_in_span3_f64(NULL, &first.set, NULL, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_in_span3_f64(solver, NULL, NULL, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_in_span3_f64(solver, &first.set, NULL, NULL, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_in_span2_f64(solver, &first.set, NULL, NULL, &result) == QDIST_ERROR_DIMENSION);
+    result.struct_size = 0;
+    CHECK(qdist_solve_in_span3_f64(solver, &first.set, NULL, NULL, &result) == QDIST_ERROR_STRUCT_SIZE);
+    CHECK(WARM(0) == QDIST_ERROR_STRUCT_SIZE);
+#undef WARM
+#undef REFUSED
+}
+
 static void names(void) {
     qdist_status status;
     CHECK(strcmp(qdist_status_string(QDIST_ERROR_NULL), "null pointer") == 0);
     for (status = -3; status < 40; ++status) {
         CHECK(qdist_status_string(status) != NULL && qdist_status_string(status)[0] != '\0');
         CHECK(qdist_outcome_string(status) != NULL && qdist_outcome_string(status)[0] != '\0');
+        CHECK(qdist_plan_string(status) != NULL && qdist_plan_string(status)[0] != '\0');
     }
 }
 
@@ -426,6 +556,8 @@ int main(void) {
     lists();
     sets_and_gauges();
     queries();
+    wrong_gauges();
+    warm_starts();
     spoiled();
     names();
     return finish("bad_arguments");

@@ -426,6 +426,225 @@ static void Q(dimensions)(void) {
     }
 }
 
+/* An ellipsoid with the semi axes sqrt(1), sqrt(2), .. in as many dimensions as `size`, moved by `at`: sets, gauges and clocks of the
+ * caller. */
+typedef struct {
+    uint32_t size;
+    double at[6];
+    int bad; /* 1: a vertex function that fails, 2: one that writes NaN */
+    int calls, left;
+} Q(world);
+
+static int32_t Q(egg)(void *user, const REAL *direction, REAL *point) {
+    Q(world) *w = user;
+    double sum = 0;
+    uint32_t i;
+    ++w->calls;
+    for (i = 0; i < w->size; ++i) sum += (double)direction[i] * direction[i] * (1 + i);
+    for (i = 0; i < w->size; ++i) point[i] = (REAL)(direction[i] * (1 + i) / sqrt(sum) + w->at[i]);
+    return 0;
+}
+
+static int32_t Q(egg_mirrored)(void *user, uint32_t signs) {
+    const Q(world) *w = user;
+    uint32_t i;
+    for (i = 0; i < w->size; ++i)
+        if ((signs >> i & 1) && w->at[i] != 0) return 0;
+    return 1;
+}
+
+/* The unit cube as a gauge of the caller. */
+static REAL Q(cube_value)(void *user, const REAL *direction) {
+    const Q(world) *w = user;
+    double sum = 0;
+    uint32_t i;
+    for (i = 0; i < w->size; ++i) sum += fabs(direction[i]);
+    return (REAL)sum;
+}
+
+static int32_t Q(cube_point)(void *user, const REAL *direction, REAL *point) {
+    const Q(world) *w = user;
+    uint32_t i;
+    if (w->bad == 3) return 1;
+    for (i = 0; i < w->size; ++i) point[i] = w->bad == 4 ? (REAL)NAN : direction[i] < 0 ? -1 : 1;
+    return 0;
+}
+
+static int32_t Q(cube_vertex)(void *user, uint32_t index, REAL *point) {
+    const Q(world) *w = user;
+    uint32_t i;
+    for (i = 0; i < w->size; ++i) point[i] = index >> i & 1 ? -1 : 1;
+    if (w->bad == 2 && index == 5) point[1] = (REAL)NAN;
+    return w->bad == 1 && index == 5 ? 99 : 0;
+}
+
+static int32_t Q(clock)(void *user) {
+    Q(world) *w = user;
+    return w->left-- <= 0;
+}
+
+/* A 6-D query in 64 KB: what it is decides the plan. */
+static void Q(plans)(void) {
+    static uint64_t memory[8192];
+    const Q(qdist_box_gauge) cuboid = {{1, 1, 1, 1, 1, 0.5}, 6};
+    const Q(qdist_cross_gauge) cross = {{2, 1, 1, 1, 1, 1}, 6};
+    const Q(qdist_segment_gauge) ray = {{0, 0, 0, 2, 0, 0}, 6};
+    const REAL sparse[18] = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2, 0, 0};
+    const Q(qdist_points) list = {sparse, 3, 6}; /* with the origin among them */
+    Q(qdist_ellipsoid_gauge) round = {{1, 1, 1, 1, 1, 1}, NULL, 6};
+    Q(world) w;
+    Q(qdist_set) set;
+    Q(qdist_gauge) gauge, own;
+    Q(qdist_options) options;
+    Q(qdist_tracker) tracker;
+    Q(result) result, before;
+    qdist_solver *solver = NULL;
+    const double whole = 1 / sqrt(1.0 + 1 / 2. + 1 / 3. + 1 / 4. + 1 / 5. + 0.25 / 6.);
+    double least, step;
+    REAL lower;
+    int i, tick;
+
+    CHECK(BYTES(6, 80, 512) <= sizeof memory);
+    CHECK(Q(qdist_solver_init6)(memory, sizeof memory, 80, 512, &solver) == QDIST_OK);
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    memset(&w, 0, sizeof w);
+    memset(&set, 0, sizeof set);
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    w.size = 6;
+    set.support = Q(egg), set.user = &w, set.extent = (REAL)2.5;
+#define SOLVE(q) Q(qdist_solve6)(solver, &set, q, &options, &result)
+#define IS(d) (result.outcome == QDIST_CONVERGED && result.lower <= (d) && (d) <= result.upper && \
+               result.upper - result.lower <= 10.001 * WIDTH * (d))
+    options.relative = (REAL)(10 * WIDTH);
+
+    /* Polytopal gauges: a corner of t * box is on the ellipsoid where the sum of its squares over the axes' is 1. */
+    CHECK(Q(qdist_gauge_box)(&gauge, &cuboid) == QDIST_OK && gauge.vertex_count == 64);
+    CHECK(SOLVE(&gauge) == QDIST_OK && IS(whole) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(result.vertices_used == 0 && result.facets_used == 0 && result.has_rival == 1);
+    CHECK(Q(qdist_gauge_cross)(&gauge, &cross) == QDIST_OK && gauge.vertex_count == 12);
+    CHECK(SOLVE(&gauge) == QDIST_OK && IS(0.5) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK && gauge.vertex_count == 1);
+    CHECK(SOLVE(&gauge) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(Q(qdist_gauge_vertices)(&gauge, &list) == QDIST_OK && gauge.vertex_count == 3);
+    CHECK(SOLVE(&gauge) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
+
+    /* The same cube by callbacks; what fails is said. */
+    memset(&own, 0, sizeof own);
+    own.value = Q(cube_value), own.user = &w, own.inner_radius = 1;
+    own.vertex = Q(cube_vertex), own.vertex_count = 64, own.point = Q(cube_point);
+    CHECK(SOLVE(&own) == QDIST_OK && IS(1 / sqrt(2.45)) && result.plan == QDIST_PLAN_RAYS);
+    own.inner_radius = 0, set.extent = 0, own.extent = 0; /* nothing is known of the sizes */
+    CHECK(SOLVE(&own) == QDIST_OK && IS(1 / sqrt(2.45)) && result.plan == QDIST_PLAN_RAYS);
+    set.extent = (REAL)2.5;
+    for (w.bad = 1; w.bad <= 2; ++w.bad) {
+        CHECK(SOLVE(&own) == QDIST_ERROR_CALLBACK && result.outcome == QDIST_SUPPORT_FAILED);
+        CHECK(result.callback_code == (w.bad == 1 ? 99 : QDIST_CALLBACK_NONFINITE));
+        CHECK(result.lower <= 1 / sqrt(2.45) && 1 / sqrt(2.45) <= result.upper);
+    }
+    /* Without vertices it is a gauge like any other; a `point` that fails or lies only slows the search down. */
+    own.vertex_count = 0;
+    options.relative = (REAL)0.05;
+    for (w.bad = 3; w.bad <= 5; ++w.bad) {
+        set.mirrored = Q(egg_mirrored), own.mirrored = Q(egg_mirrored);
+        CHECK(SOLVE(&own) == QDIST_OK && result.outcome == QDIST_CONVERGED && result.plan != QDIST_PLAN_RAYS);
+        CHECK(result.lower <= 1 / sqrt(2.45) && 1 / sqrt(2.45) <= result.upper);
+    }
+    w.bad = 0;
+
+    /* Smooth against smooth: cones, of which the mirrors leave one orthant. */
+    options.relative = (REAL)0.02;
+    CHECK(SOLVE(NULL) == QDIST_OK && result.outcome == QDIST_CONVERGED && result.plan == QDIST_PLAN_CONES);
+    CHECK(result.lower <= 1 && 1 <= result.upper && result.upper - result.lower <= 0.02 * result.lower * 1.0001);
+    CHECK(result.cones >= 1 && result.facets_used <= 512);
+    before = result;
+    set.mirrored = NULL;
+    CHECK(SOLVE(NULL) == QDIST_OK && result.outcome == QDIST_CONVERGED && result.plan == QDIST_PLAN_CONES);
+    CHECK(result.cones >= 64 && result.cones > before.cones && result.lower <= 1 && 1 <= result.upper);
+    CHECK(strcmp(qdist_plan_string(result.plan), "cones") == 0);
+
+    /* Deadlines: after any number of iterations there is a true bracket. */
+    options.interrupt = Q(clock), options.interrupt_user = &w;
+    for (i = 0; i < 2000; i = 2 * i + 1) {
+        w.left = i;
+        CHECK(SOLVE(NULL) == QDIST_OK && result.outcome == QDIST_INTERRUPTED);
+        CHECK(result.lower <= 1 && 1 <= result.upper && result.iterations <= (uint32_t)i);
+    }
+    options.interrupt = NULL;
+
+    /* The gradient: the sphere of radius 1 in a half space of directions, moved by `at`, loses what it is moved along u. */
+    w.at[0] = 0.25;
+    CHECK(SOLVE(NULL) == QDIST_OK && result.lower <= 0.75 && 0.75 <= result.upper && result.gauge == 1);
+    CHECK(fabs(result.direction[0] + 1) < 0.05 && fabs(result.support[0] + 0.75) < 0.05 && result.has_rival == 0);
+    before = result;
+    w.at[0] = 0.26;
+    options.relative = (REAL)0.01;
+    CHECK(SOLVE(NULL) == QDIST_OK && fabs(0.75 + before.direction[0] / before.gauge * 0.01 - 0.74) < 0.001);
+    w.at[0] = 0;
+
+    /* A loop: the set moves by a little, and the bracket moves along. */
+    CHECK(Q(qdist_tracker_init)(&tracker, 6) == QDIST_OK && tracker.dimension == 6);
+    CHECK(Q(qdist_tracker_lower_after)(&tracker, NULL, 0, &lower) == QDIST_OK && lower < -1e30);
+    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &round) == QDIST_OK && gauge.inner_radius == 1);
+    set.mirrored = Q(egg_mirrored);
+    options.relative = (REAL)0.02;
+    for (tick = 0, least = 1, step = -1; tick < 40; ++tick) {
+        uint32_t calls;
+        if (tick > 0) {
+            step = 1e-4;
+            w.at[0] += 1e-4;
+            least -= 1e-4;
+            CHECK(Q(qdist_tracker_lower_after)(&tracker, &gauge, (REAL)step * (REAL)1.0001, &lower) == QDIST_OK);
+            CHECK(lower <= least && lower > least * 0.96);
+        }
+        options.max_iterations = tick > 0 ? 20 : 0;
+        options.relative = (REAL)(tick > 0 ? 0.03 : 0.02);
+        result.support_calls = 0;
+        CHECK(Q(qdist_solve_warm6)(solver, &tracker, &set, &gauge, (REAL)step * (REAL)1.0001, &options, &result) == QDIST_OK);
+        CHECK(result.lower <= least * (1 + 1e-6) && least * (1 - 1e-6) <= result.upper && tracker.lower == result.lower);
+        calls = result.support_calls;
+        if (tick > 0 && tick < 20) CHECK(result.plan == QDIST_PLAN_WARM && calls < 30 && result.outcome == QDIST_CONVERGED);
+    }
+    options.max_iterations = 0;
+#undef SOLVE
+#undef IS
+}
+
+/* Flat sets in their span, and interrupted depths. */
+static void Q(flat)(qdist_solver *solver) {
+    const Q(qdist_box) plate = {{1.0, 0.5, 0.0}}, needle = {{0.0, 0.0, 2.0}}, cube = {{1, 1, 1}};
+    Q(qdist_options) options;
+    Q(world) w;
+    Q(body) body, turned;
+    Q(depth) depth;
+    Q(result) result;
+
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_body_box)(&body, &plate) == QDIST_OK && body.set.mirrored != NULL && body.set.mirrored(NULL, 7) == 1);
+    CHECK(Q(qdist_solve3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_DEGENERATE);
+    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
+    CHECK(result.dimension == 2 && Q(brackets)(result.lower, result.upper, 0.5) && fabs(fabs(result.direction[1]) - 1) < 1e-3);
+    CHECK(Q(qdist_body_box)(&body, &needle) == QDIST_OK);
+    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
+    CHECK(result.dimension == 1 && Q(brackets)(result.lower, result.upper, 2.0) && result.has_rival == 1);
+    CHECK(Q(qdist_body_box)(&body, &cube) == QDIST_OK);
+    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.dimension == 3);
+    CHECK(Q(brackets)(result.lower, result.upper, 1.0) && strcmp(qdist_plan_string(result.plan), "expansion") == 0);
+
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    memset(&w, 0, sizeof w);
+    options.interrupt = Q(clock), options.interrupt_user = &w;
+    turned = body;
+    turned.rotation[0] = turned.rotation[4] = (REAL)0.6, turned.rotation[1] = (REAL)-0.8, turned.rotation[3] = (REAL)0.8;
+    turned.translation[0] = (REAL)0.5;
+    depth = Q(ask)(solver, &body, &turned, &options);
+    CHECK(depth.outcome == QDIST_INTERRUPTED && depth.iterations == 0 && depth.lower <= depth.upper);
+    w.left = 1000;
+    depth = Q(ask)(solver, &body, &turned, &options);
+    CHECK(depth.outcome == QDIST_CONVERGED && w.left < 1000);
+}
+
 /* A ball of 400 points by its graph, against the list. */
 static void Q(hulls)(qdist_solver *solver) {
     enum { COUNT = 400 };
@@ -474,6 +693,8 @@ static void Q(smoke)(void) {
     Q(gauges)(solver);
     Q(hulls)(solver);
     Q(dimensions)();
+    Q(plans)();
+    Q(flat)(solver);
 }
 
 #endif

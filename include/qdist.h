@@ -83,10 +83,10 @@ typedef struct qdist_solver qdist_solver;
 /* A number of uint16_t that suffices for the graph of a hull of `count` points. */
 #define QDIST_HULL_GRAPH_LEN(count) (UINT32_C(11) * (count) + UINT32_C(16))
 
-/* ====================================================== STATUS AND OUTCOME ======================================================
+/* =================================================== STATUS, OUTCOME AND PLAN ===================================================
  *
- * Two questions, two types. A status says whether the call worked. An outcome says what the run concluded, and whatever
- * it concluded, the bracket holds. */
+ * Three questions, three types. A status says whether the call worked. An outcome says what the run concluded, and whatever
+ * it concluded, the bracket holds. A plan says how. */
 
 // callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
 // number. Callbacks must not return it, nor INT32_MIN + 1.
@@ -98,6 +98,15 @@ typedef int32_t qdist_status;
 
 // What did the run conclude?
 typedef int32_t qdist_outcome;
+
+// How was the query answered? What A and Q are decides it.
+typedef int32_t qdist_plan;
+
+// Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
+// clock or at a flag that an interrupt handler sets.
+//
+// user: interrupt_user of the options.
+typedef int32_t (*qdist_interrupt)(void *user);
 
 // The call worked.
 #define QDIST_OK 0
@@ -160,7 +169,8 @@ typedef int32_t qdist_outcome;
 // The bracket cannot be narrowed in this scalar type; the tolerance asked for more.
 #define QDIST_PRECISION 5
 
-// The solver's memory is full.
+// The solver's memory is full. (qdist_solve goes on cone by cone, QDIST_PLAN_CONES, where there are 3 * dimension vertices and
+// 4 * dimension facets.)
 #define QDIST_CAPACITY 6
 
 // The iteration limit is reached.
@@ -172,11 +182,32 @@ typedef int32_t qdist_outcome;
 // A callback failed; the status is QDIST_ERROR_CALLBACK.
 #define QDIST_SUPPORT_FAILED 9
 
+// `interrupt` of the options said so.
+#define QDIST_INTERRUPTED 10
+
+// Expansion of one polytope, best first.
+#define QDIST_PLAN_EXPANSION 0
+
+// By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
+#define QDIST_PLAN_DISTANCE 1
+
+// Polytopal Q: one ray per vertex of Q, no polytope, and no memory of the solver.
+#define QDIST_PLAN_RAYS 2
+
+// The polytope outgrew the memory: expansion cone by cone in the same memory.
+#define QDIST_PLAN_CONES 3
+
+// The bracket of the last call, moved: nothing was expanded.
+#define QDIST_PLAN_WARM 4
+
 // The name of a status, e.g. "null pointer". A static string, never NULL.
 const char *qdist_status_string(qdist_status status);
 
 // The name of an outcome, e.g. "converged". A static string, never NULL.
 const char *qdist_outcome_string(qdist_outcome outcome);
+
+// The name of a plan, e.g. "rays". A static string, never NULL.
+const char *qdist_plan_string(qdist_plan plan);
 
 /* =========================================================== VERSION =========================================================== */
 
@@ -193,9 +224,9 @@ const char *qdist_outcome_string(qdist_outcome outcome);
 // that of this header.
 uint32_t qdist_version(void);
 
-/* ====================================================== SYMMETRY OF A BODY ====================================================== */
+/* =========================================================== SYMMETRY =========================================================== */
 
-// None that is known.
+// Of a body: none that is known.
 #define QDIST_SYMMETRY_NONE 0
 
 // All rotations about the z axis of the body's frame leave the set unchanged.
@@ -204,16 +235,23 @@ uint32_t qdist_version(void);
 // All rotations about the origin of the body's frame leave the set unchanged.
 #define QDIST_SYMMETRY_FULL 2
 
+// Of a set or gauge: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
+// when it certainly does not, else 0. A search by cones leaves out what is an image of something else under a change of sign
+// that both A and Q allow.
+//
+// user: the pointer from the set or gauge.
+typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
+
 /* =========================================================== SOLVERS ===========================================================
  *
  * A solver lives in memory that you own: a static array, a stack frame, a heap block. It is made once and then used for any
  * number of queries; it keeps nothing between them. There is nothing to free. The memory holds no addresses, so that a solver
  * may be moved with its memory.
  *
- * Capacities: `max_vertices` bounds the points that a query may add, `max_facets` the facets at one time. In
+ * Capacities: `max_vertices` bounds the points that are stored, `max_facets` the facets at one time. In
  * dimension 3, facets = 2 * vertices suffices; in dimension 6 a hundred facets for a vertex is not
- * rare. When either is full the query ends with QDIST_CAPACITY and a bracket that is still true; results
- * say how much was used. */
+ * rare. When either is full, qdist_solve goes on cone by cone in the same memory, and qdist_depth3 ends with
+ * QDIST_CAPACITY and a bracket that is still true; results say how much was used. */
 
 // The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64.
 qdist_status qdist_workspace_query_f64(uint32_t dimension, uint32_t max_vertices, uint32_t max_facets, uint32_t *bytes);
@@ -278,7 +316,9 @@ typedef struct {
     // NULL; or, if `support` takes shortcuts and may miss the farthest point, a slower function that does not. It checks
     // the direction that is about to be reported.
     qdist_support_f64 exhaustive;
-    // First argument of both functions.
+    // NULL: not known. Which mirror images of the core are the core itself.
+    qdist_mirrored mirrored;
+    // First argument of all functions.
     void *user;
     // Radius of the ball swept over the core, >= 0.
     double radius;
@@ -522,16 +562,36 @@ int32_t qdist_linear_exhaustive_f64(void *user, const double *direction, double 
 // the query with QDIST_CALLBACK_NONFINITE.
 typedef double (*qdist_gauge_value_f64)(void *user, const double *direction);
 
-// A gauge set. Start with `= {0}`.
+// Writes a point q of Q with direction . q = h_Q(direction) to `point`: where the plane touches Q. Returns 0, or anything else where
+// that is not known.
+typedef int32_t (*qdist_gauge_point_f64)(void *user, const double *direction, double *point);
+
+// Writes point number `index` < vertex_count to `point`. Returns 0, or a code that ends the query, as that of a support function
+// does. Coordinates that are not finite end it too.
+typedef int32_t (*qdist_gauge_vertex_f64)(void *user, uint32_t index, double *point);
+
+// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+// true, or the bracket is not.
 typedef struct {
     qdist_gauge_value_f64 value;
-    // First argument of `value`.
+    // Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
+    qdist_gauge_point_f64 point;
+    // With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
+    // a ray at each (QDIST_PLAN_RAYS).
+    qdist_gauge_vertex_f64 vertex;
+    // Which mirror images of Q are Q itself.
+    qdist_mirrored mirrored;
+    // First argument of all functions.
     void *user;
-    // An upper bound of |q| over Q, for the rounding margin; 0: not known, and found by asking along the axes.
+    // An upper bound of |q| over Q, for the rounding margin; 0: found by asking along the axes.
     double extent;
-    // Above 0: Q is the ball of this radius around the origin, and `value` is not used. Balls swept over A are then exact.
+    // Above 0: Q is the ball of this radius around the origin, and no function is used. Balls swept over A are then exact.
     double ball_radius;
-    // The dimension that `value` works in; 0: not known, and not checked.
+    // Radius of a ball around the origin that Q contains. Without, qdist_solve_warm knows no lower bound once A has moved.
+    double inner_radius;
+    // How many points `vertex` knows.
+    uint32_t vertex_count;
+    // The dimension that the functions work in; 0: not checked.
     uint32_t dimension;
 } qdist_gauge_f64;
 
@@ -610,15 +670,33 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  * QDIST_SEPARATED it may be wider when an iteration limit ended the search. An end that is not known is
  * -DBL_MAX or DBL_MAX (float: FLT_MAX).
  *
- * The result is written when the call works, or when only a callback failed; otherwise it is left as it was. */
+ * The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
+ *
+ * qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
+ * 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
+ * `interrupt`.
+ *
+ * The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
+ * gives the derivative with respect to any parameter p of A or Q from quantities of the result:
+ *
+ *   dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
+ *
+ * with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
+ * there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+ * It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
+ * one-sided derivatives, each the least of those at all minimisers. */
 
 // How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 // relative must not both be 0.
 typedef struct {
     // sizeof(qdist_options_f64).
     uint32_t struct_size;
-    // The most points to add; 0: as many as the solver holds.
+    // The most points to add, over all plans; 0: 50,000, less than a second in dimension 6.
     uint32_t max_iterations;
+    // NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
+    qdist_interrupt interrupt;
+    // First argument of `interrupt`.
+    void *interrupt_user;
     // Stop when upper - lower <= max(absolute, relative * |d|). Both >= 0, not both 0. Default 0.
     double absolute;
     // See `absolute`. Default: 1e-6 in double, 1e-4 in float.
@@ -657,7 +735,8 @@ typedef struct {
     uint32_t iterations;
     // Calls of each body's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    // QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
     // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -670,12 +749,26 @@ typedef struct {
     uint32_t struct_size;
     // What was concluded.
     qdist_outcome outcome;
+    // How.
+    qdist_plan plan;
+    // 1: the minimiser is not unique, to the tolerance; see `rival`. 0: no second one was met.
+    uint32_t has_rival;
     // Bracket of d = max { d : d * Q inside A }, in units of Q; below 0 it is minus the Euclidean distance of A from the
-    // origin, for every Q.
+    // origin, in units of the radius where Q is a ball.
     double lower;
     double upper;
     // Unit vector u that proves `upper`: h_A(u) / h_Q(u). The weakest direction of A. Unused numbers are 0.
     double direction[6];
+    // The point of A (its ball included) that is farthest along `direction`.
+    double support[6];
+    // h_Q(direction).
+    double gauge;
+    // With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
+    double rival[6];
+    // Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
+    double weights[7];
+    // Coordinate k of point i is points[i * (dimension of the solver) + k].
+    double points[42];
     // Evidence for `lower`: so many points of A's core, in `points` and `weights`; at most dimension + 1.
     uint32_t point_count;
     // Affine dimension of A's core, as far as it was found out.
@@ -684,15 +777,15 @@ typedef struct {
     uint32_t iterations;
     // Calls of A's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    // QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
+    // With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.
+    uint32_t cones;
+    uint32_t splits;
     // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     int32_t callback_code;
-    // Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
-    double weights[7];
-    // Coordinate k of point i is points[i * (dimension of the solver) + k].
-    double points[42];
 } qdist_result_f64;
 
 // Writes the defaults.
@@ -742,6 +835,135 @@ qdist_status qdist_solve6_f64(qdist_solver *solver,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
+/* ========================================================== FLAT SETS ==========================================================
+ *
+ * A set in a line, plane or other subspace has depth 0 in the whole space, but a depth of its own in its subspace. These functions
+ * measure a flat set that contains the origin there, with the projection of Q on it; `dimension` of the result tells the
+ * subspace's dimension, and directions and points are those of the whole space. Any other set is answered as by
+ * qdist_solve. Flat means: no wider than the rounding of A's support function. Costs dimension + 1 to 2 * dimension + 2 more support
+ * calls. A program that calls one of them contains the solvers of all lower dimensions too. */
+
+// The depth d of the origin in the set A with respect to the gauge set Q, in the linear span of A, in dimension 2. Arguments as of
+// qdist_solve2.
+qdist_status qdist_solve_in_span2_f64(qdist_solver *solver,
+                                      const qdist_set_f64 *a,
+                                      const qdist_gauge_f64 *q,
+                                      const qdist_options_f64 *options,
+                                      qdist_result_f64 *result);
+
+// The same in dimension 3.
+qdist_status qdist_solve_in_span3_f64(qdist_solver *solver,
+                                      const qdist_set_f64 *a,
+                                      const qdist_gauge_f64 *q,
+                                      const qdist_options_f64 *options,
+                                      qdist_result_f64 *result);
+
+// The same in dimension 4.
+qdist_status qdist_solve_in_span4_f64(qdist_solver *solver,
+                                      const qdist_set_f64 *a,
+                                      const qdist_gauge_f64 *q,
+                                      const qdist_options_f64 *options,
+                                      qdist_result_f64 *result);
+
+// The same in dimension 5.
+qdist_status qdist_solve_in_span5_f64(qdist_solver *solver,
+                                      const qdist_set_f64 *a,
+                                      const qdist_gauge_f64 *q,
+                                      const qdist_options_f64 *options,
+                                      qdist_result_f64 *result);
+
+// The same in dimension 6.
+qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
+                                      const qdist_set_f64 *a,
+                                      const qdist_gauge_f64 *q,
+                                      const qdist_options_f64 *options,
+                                      qdist_result_f64 *result);
+
+/* ========================================================== WARM START ==========================================================
+ *
+ * For control loops. A tracker remembers the minimisers and the certified lower bound of the last tick. Where the caller knows how
+ * far the set has moved since, the old lower bound less that distance is a new one, and the old minimisers give upper bounds
+ * for one support call each. If that bracket is as narrow as the options ask for, it is the answer (QDIST_PLAN_WARM); else the solver
+ * goes on from there, within max_iterations and `interrupt`, and the result is never worse.
+ *
+ *   qdist_tracker_init_f64(&tracker, 6);
+ *   moved = -1;
+ *   for (;;) {
+ *       ... A moves; `moved` bounds how far any of its points did ...
+ *       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
+ *   } */
+
+// What a loop remembers: plain data without addresses, for one set, one gauge and one dimension. Made by
+// qdist_tracker_init_f64.
+typedef struct {
+    // sizeof(qdist_tracker_f64).
+    uint32_t struct_size;
+    uint32_t dimension;
+    // d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.
+    double lower;
+    // Unit vectors, the last minimiser first; unused ones are 0.
+    double directions[4][6];
+} qdist_tracker_f64;
+
+// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
+qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimension);
+
+// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
+// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
+                                           const qdist_gauge_f64 *q,
+                                           double moved,
+                                           double *lower);
+
+// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, for the next tick of a loop, and
+// takes note of it in the tracker. Arguments as of qdist_solve2; besides:
+//
+// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
+// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
+                                   qdist_tracker_f64 *tracker,
+                                   const qdist_set_f64 *a,
+                                   const qdist_gauge_f64 *q,
+                                   double moved,
+                                   const qdist_options_f64 *options,
+                                   qdist_result_f64 *result);
+
+// The same in dimension 3.
+qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
+                                   qdist_tracker_f64 *tracker,
+                                   const qdist_set_f64 *a,
+                                   const qdist_gauge_f64 *q,
+                                   double moved,
+                                   const qdist_options_f64 *options,
+                                   qdist_result_f64 *result);
+
+// The same in dimension 4.
+qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
+                                   qdist_tracker_f64 *tracker,
+                                   const qdist_set_f64 *a,
+                                   const qdist_gauge_f64 *q,
+                                   double moved,
+                                   const qdist_options_f64 *options,
+                                   qdist_result_f64 *result);
+
+// The same in dimension 5.
+qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
+                                   qdist_tracker_f64 *tracker,
+                                   const qdist_set_f64 *a,
+                                   const qdist_gauge_f64 *q,
+                                   double moved,
+                                   const qdist_options_f64 *options,
+                                   qdist_result_f64 *result);
+
+// The same in dimension 6.
+qdist_status qdist_solve_warm6_f64(qdist_solver *solver,
+                                   qdist_tracker_f64 *tracker,
+                                   const qdist_set_f64 *a,
+                                   const qdist_gauge_f64 *q,
+                                   double moved,
+                                   const qdist_options_f64 *options,
+                                   qdist_result_f64 *result);
+
 /* ======================================================== SOLVERS, FLOAT ======================================================== */
 
 qdist_status qdist_workspace_query_f32(uint32_t dimension, uint32_t max_vertices, uint32_t max_facets, uint32_t *bytes);
@@ -783,6 +1005,7 @@ typedef int32_t (*qdist_support_f32)(void *user, const float *direction, float *
 typedef struct {
     qdist_support_f32 support;
     qdist_support_f32 exhaustive;
+    qdist_mirrored mirrored;
     void *user;
     float radius;
     float extent;
@@ -930,11 +1153,20 @@ int32_t qdist_linear_exhaustive_f32(void *user, const float *direction, float *p
 
 typedef float (*qdist_gauge_value_f32)(void *user, const float *direction);
 
+typedef int32_t (*qdist_gauge_point_f32)(void *user, const float *direction, float *point);
+
+typedef int32_t (*qdist_gauge_vertex_f32)(void *user, uint32_t index, float *point);
+
 typedef struct {
     qdist_gauge_value_f32 value;
+    qdist_gauge_point_f32 point;
+    qdist_gauge_vertex_f32 vertex;
+    qdist_mirrored mirrored;
     void *user;
     float extent;
     float ball_radius;
+    float inner_radius;
+    uint32_t vertex_count;
     uint32_t dimension;
 } qdist_gauge_f32;
 
@@ -986,6 +1218,8 @@ float qdist_vertices_gauge_value_f32(void *user, const float *direction);
 typedef struct {
     uint32_t struct_size;
     uint32_t max_iterations;
+    qdist_interrupt interrupt;
+    void *interrupt_user;
     float absolute;
     float relative;
     float threshold;
@@ -1013,18 +1247,25 @@ typedef struct {
 typedef struct {
     uint32_t struct_size;
     qdist_outcome outcome;
+    qdist_plan plan;
+    uint32_t has_rival;
     float lower;
     float upper;
     float direction[6];
+    float support[6];
+    float gauge;
+    float rival[6];
+    float weights[7];
+    float points[42];
     uint32_t point_count;
     uint32_t dimension;
     uint32_t iterations;
     uint32_t support_calls;
     uint32_t vertices_used;
     uint32_t facets_used;
+    uint32_t cones;
+    uint32_t splits;
     int32_t callback_code;
-    float weights[7];
-    float points[42];
 } qdist_result_f32;
 
 qdist_status qdist_options_default_f32(qdist_options_f32 *options);
@@ -1064,6 +1305,94 @@ qdist_status qdist_solve6_f32(qdist_solver *solver,
                               const qdist_gauge_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
+
+/* ======================================================= FLAT SETS, FLOAT ======================================================= */
+
+qdist_status qdist_solve_in_span2_f32(qdist_solver *solver,
+                                      const qdist_set_f32 *a,
+                                      const qdist_gauge_f32 *q,
+                                      const qdist_options_f32 *options,
+                                      qdist_result_f32 *result);
+
+qdist_status qdist_solve_in_span3_f32(qdist_solver *solver,
+                                      const qdist_set_f32 *a,
+                                      const qdist_gauge_f32 *q,
+                                      const qdist_options_f32 *options,
+                                      qdist_result_f32 *result);
+
+qdist_status qdist_solve_in_span4_f32(qdist_solver *solver,
+                                      const qdist_set_f32 *a,
+                                      const qdist_gauge_f32 *q,
+                                      const qdist_options_f32 *options,
+                                      qdist_result_f32 *result);
+
+qdist_status qdist_solve_in_span5_f32(qdist_solver *solver,
+                                      const qdist_set_f32 *a,
+                                      const qdist_gauge_f32 *q,
+                                      const qdist_options_f32 *options,
+                                      qdist_result_f32 *result);
+
+qdist_status qdist_solve_in_span6_f32(qdist_solver *solver,
+                                      const qdist_set_f32 *a,
+                                      const qdist_gauge_f32 *q,
+                                      const qdist_options_f32 *options,
+                                      qdist_result_f32 *result);
+
+/* ====================================================== WARM START, FLOAT ====================================================== */
+
+typedef struct {
+    uint32_t struct_size;
+    uint32_t dimension;
+    float lower;
+    float directions[4][6];
+} qdist_tracker_f32;
+
+qdist_status qdist_tracker_init_f32(qdist_tracker_f32 *tracker, uint32_t dimension);
+
+qdist_status qdist_tracker_lower_after_f32(const qdist_tracker_f32 *tracker,
+                                           const qdist_gauge_f32 *q,
+                                           float moved,
+                                           float *lower);
+
+qdist_status qdist_solve_warm2_f32(qdist_solver *solver,
+                                   qdist_tracker_f32 *tracker,
+                                   const qdist_set_f32 *a,
+                                   const qdist_gauge_f32 *q,
+                                   float moved,
+                                   const qdist_options_f32 *options,
+                                   qdist_result_f32 *result);
+
+qdist_status qdist_solve_warm3_f32(qdist_solver *solver,
+                                   qdist_tracker_f32 *tracker,
+                                   const qdist_set_f32 *a,
+                                   const qdist_gauge_f32 *q,
+                                   float moved,
+                                   const qdist_options_f32 *options,
+                                   qdist_result_f32 *result);
+
+qdist_status qdist_solve_warm4_f32(qdist_solver *solver,
+                                   qdist_tracker_f32 *tracker,
+                                   const qdist_set_f32 *a,
+                                   const qdist_gauge_f32 *q,
+                                   float moved,
+                                   const qdist_options_f32 *options,
+                                   qdist_result_f32 *result);
+
+qdist_status qdist_solve_warm5_f32(qdist_solver *solver,
+                                   qdist_tracker_f32 *tracker,
+                                   const qdist_set_f32 *a,
+                                   const qdist_gauge_f32 *q,
+                                   float moved,
+                                   const qdist_options_f32 *options,
+                                   qdist_result_f32 *result);
+
+qdist_status qdist_solve_warm6_f32(qdist_solver *solver,
+                                   qdist_tracker_f32 *tracker,
+                                   const qdist_set_f32 *a,
+                                   const qdist_gauge_f32 *q,
+                                   float moved,
+                                   const qdist_options_f32 *options,
+                                   qdist_result_f32 *result);
 
 #ifdef __cplusplus
 }

@@ -25,16 +25,16 @@ chapter() {
         suffix == "" { text = text "\n *" ($0 == "" ? "" : " " $0) }
         END { print text " */\n" }'
     cbindgen --config "$1" "$2" 2>"$out.warnings" || { cat "$out.warnings" >&2; exit 1; }
-    grep -vE "^WARN: (Can't find qdist_|Skip .*::_ )|^$" "$out.warnings" >&2 || true
+    grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skipping .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
 {
     cat src/capi/prelude.h
-    for file in status version symmetry f64/solver f64/sets f64/shapes f64/points f64/combine f64/gauges f64/query; do
+    for file in status version symmetry f64/solver f64/sets f64/shapes f64/points f64/combine f64/gauges f64/query f64/span f64/warm; do
         chapter cbindgen.toml "src/capi/$file.rs" ""
     done
     { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-    for file in solver sets shapes points combine gauges query; do
+    for file in solver sets shapes points combine gauges query span warm; do
         chapter "$out.toml" "src/capi/f32/$file.rs" ", FLOAT"
     done
     printf '\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n'

@@ -62,8 +62,11 @@ C
 }
 box_program f32
 size "$target/box_f32" | awk 'NR == 2 { printf "  boxes, 3-D, float: text %d, data %d, bss %d\n", $1, $2, $3 }'
-# What a program does not use is not linked.
-foreign=$(nm -C "$target/box_f32" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|gauge|init[2456]|solve[2-6]' || true)
+# What a program does not use is not linked. (The whole library contains the names that are searched for.)
+for plan in conewise rays shoot warm span; do
+    nm -C "$target/all" | grep -E ' [tT] ' | grep -q "$plan" || { echo "purity: no symbol is named $plan" >&2; exit 1; }
+done
+foreign=$(nm -C "$target/box_f32" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|gauge|init[2456]|solve[2-6]|rays|shoot|warm|span' || true)
 if [ -n "$foreign" ]; then
     echo "purity: a program of boxes contains what it does not use:" >&2
     echo "$foreign" >&2

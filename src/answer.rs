@@ -51,7 +51,7 @@ pub enum Plan {
 /// The result of a query.
 ///
 /// Lengths are in the units of A; `lower` and `upper` are multiples of Q where positive, and minus Euclidean distances where
-/// negative.
+/// negative (in units of the radius where Q is a ball).
 #[derive(Clone)]
 pub struct Answer<T, const N: usize> {
     /// What was concluded.

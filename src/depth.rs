@@ -299,6 +299,17 @@ impl<T: Real> Solver<'_, T, 3> {
     /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact.
     /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
     pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
+        self.depth_until(a, b, options, None)
+    }
+
+    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
+    pub fn depth_until(
+        &mut self,
+        a: &Body<'_, T>,
+        b: &Body<'_, T>,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T> {
         if !finite(&a.translation) || !finite(&b.translation) {
             return Depth::failed(Failure(NOT_FINITE));
         }
@@ -309,6 +320,7 @@ impl<T: Real> Solver<'_, T, 3> {
         let ball = Ball::unit();
         if let Some(axis) = pair.common_axis() {
             let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
+            query.interrupt = interrupt;
             if checked.and_then(|()| query.normalize()).is_ok()
                 && let Some(answer) = self.solve_meridian(&mut query, &axis)
             {
@@ -321,6 +333,7 @@ impl<T: Real> Solver<'_, T, 3> {
         }
         let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), options);
         query.seeks_rivals = false;
+        query.interrupt = interrupt;
         let answer = self.expand_only((query, checked));
         Depth::new(&answer, &pair)
     }

@@ -126,6 +126,9 @@ impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
         let extent = self.0.extent();
         if extent > T::zero() { extent + self.0.radius() } else { extent }
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.0.mirrored(signs)
+    }
     fn error(&self) -> T {
         self.0.error() + T::count(8 + N) * T::ROUNDOFF * self.0.radius()
     }

@@ -17,6 +17,7 @@ use crate::simplex::{Corner, Simplex, Vertex};
 use crate::solver::Solver;
 use crate::start::Start;
 use crate::support::{Failure, Support};
+use heapless::Vec;
 use nalgebra::SMatrix;
 
 /// A set or a gauge seen in a subspace.
@@ -114,16 +115,27 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
+        self.solve_in_span_until(a, q, options, None)
+    }
+
+    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
+    pub fn solve_in_span_until(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Answer<T, N> {
         let Some(Span { axes, dimension, support_calls }) = span(a, q, options) else {
-            return self.solve(a, q, options);
+            return self.solve_until(a, q, options, interrupt);
         };
         let answer = match dimension {
-            1 => solve_line(a, q, &axes[0], options).unwrap_or_else(|| self.solve(a, q, options)),
-            2 if N > 2 => self.within::<2>(a, q, &axes, options),
-            3 if N > 3 => self.within::<3>(a, q, &axes, options),
-            4 if N > 4 => self.within::<4>(a, q, &axes, options),
-            5 if N > 5 => self.within::<5>(a, q, &axes, options),
-            _ => self.solve(a, q, options),
+            1 => solve_line(a, q, &axes[0], options).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
+            2 if N > 2 => self.within::<2>(a, q, &axes, options, interrupt),
+            3 if N > 3 => self.within::<3>(a, q, &axes, options, interrupt),
+            4 if N > 4 => self.within::<4>(a, q, &axes, options, interrupt),
+            5 if N > 5 => self.within::<5>(a, q, &axes, options, interrupt),
+            _ => self.solve_until(a, q, options, interrupt),
         };
         Answer { support_calls: answer.support_calls.saturating_add(support_calls), ..answer }
     }
@@ -134,9 +146,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         axes: &[Vector<T, N>; N],
         options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
         let basis = SMatrix::<T, N, K>::from_fn(|i, j| axes[j.min(N - 1)][i]);
-        let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve(a, q, options) };
+        let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve_until(a, q, options, interrupt) };
         let options = Options {
             absolute: options.absolute,
             relative: options.relative,
@@ -145,16 +158,17 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             guess: options.guess.map(|guess| basis.tr_mul(&guess)),
         };
         let (a, q) = (Within { inner: a, basis: &basis }, Within { inner: q, basis: &basis });
-        widened(&narrow.solve(&a, &q, &options), &basis)
+        widened(&narrow.solve_until(&a, &q, &options, interrupt), &basis)
     }
 }
 
 /// The answer in space.
 fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis: &SMatrix<T, N, K>) -> Answer<T, N> {
-    let corners = answer.witness.corners.iter().map(|corner| Corner {
-        vertex: Vertex { point: basis * corner.vertex.point, witness: basis * corner.vertex.witness },
-        weight: corner.weight,
-    });
+    let mut corners = Vec::new();
+    for corner in &answer.witness.corners {
+        let vertex = Vertex { point: basis * corner.vertex.point, witness: basis * corner.vertex.witness };
+        let _ = corners.push(Corner { vertex, weight: corner.weight });
+    }
     Answer {
         outcome: answer.outcome,
         lower: answer.lower,
@@ -164,7 +178,7 @@ fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis
         gauge: answer.gauge,
         rival: answer.rival.map(|rival| basis * rival),
         plan: answer.plan,
-        witness: Simplex { corners: corners.collect() },
+        witness: Simplex { corners },
         dimension: answer.dimension,
         iterations: answer.iterations,
         support_calls: answer.support_calls,

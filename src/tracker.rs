@@ -78,16 +78,15 @@ impl<T: Real, const N: usize> Tracker<T, N> {
         if !(self.lower > -T::HUGE) || !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
             return -T::HUGE;
         }
-        // Below 0, d is minus a distance.
-        let positive = self.lower.at_least(T::zero());
-        let left = if moved > T::zero() { positive - moved / inner } else { positive };
-        let lower = if left >= T::zero() && self.lower >= T::zero() {
-            left
-        } else if self.lower >= T::zero() {
-            left * inner
+        // Below 0, d is minus a distance, in units of the radius for a ball: the less favourable of the two is taken.
+        let steps = |length: T| if length > T::zero() { (length / inner).at_least(length) } else { T::zero() };
+        let lower = if self.lower < T::zero() {
+            self.lower - steps(moved)
         } else {
-            self.lower - moved
+            let left = if moved > T::zero() { self.lower - moved / inner } else { self.lower };
+            if left < T::zero() { left.at_most(left * inner) } else { left }
         };
+        let positive = self.lower.at_least(T::zero());
         let slack = (positive + moved + self.lower.abs() + lower.abs()) * (T::count(8) * T::ROUNDOFF);
         let slack = if inner > T::zero() && inner < T::one() { slack / inner } else { slack };
         (lower - slack).at_least(-T::HUGE)

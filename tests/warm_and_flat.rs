@@ -187,3 +187,48 @@ fn what_spans_the_space_is_solved_there() {
     assert_eq!(a.outcome, Outcome::Separated);
     assert!(a.lower <= -2.0 && -2.0 <= a.upper);
 }
+
+/// A cube whose fifth corner is what a careless caller made of it.
+struct Corners(f64);
+
+impl Gauge<f64, 3> for Corners {
+    fn value(&self, u: &Vector<f64, 3>) -> Result<f64, Failure> {
+        Ok(u.abs().sum())
+    }
+    fn vertex_count(&self) -> usize {
+        9
+    }
+    fn vertex(&self, index: usize) -> Vector<f64, 3> {
+        match index {
+            8 => Vector::zeros(), // the origin may be listed
+            5 => Vector::from([-1.0, 1.0, -self.0]),
+            _ => Vector::from_fn(|i, _| if index >> i & 1 == 1 { -1.0 } else { 1.0 }),
+        }
+    }
+    fn error(&self) -> f64 {
+        1e-15
+    }
+}
+
+/// Of a set that does not know its extent, too.
+#[test]
+fn rays_refuse_what_is_not_a_point() {
+    struct Plain;
+    impl Support<f64, 3> for Plain {
+        fn support(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+            Ok(u.map(|x| 2f64.copysign(x)))
+        }
+    }
+    let mut memory = Memory::new::<f64, 3>(64, 128);
+    let a = memory.solver::<f64, 3>().solve(&Plain, &Corners(1.0), &Options::default());
+    assert_eq!((a.outcome, a.plan, a.vertices), (Outcome::Converged, Plan::Rays, 0));
+    assert!(a.lower <= 2.0 && 2.0 <= a.upper && a.upper - a.lower < 1e-5);
+    for bad in [f64::NAN, f64::INFINITY] {
+        let a = memory.solver::<f64, 3>().solve(&Plain, &Corners(bad), &Options::default());
+        assert_eq!((a.outcome, a.failure), (Outcome::SupportFailed, qdist::NOT_FINITE));
+        assert!(a.lower <= 2.0 && 2.0 <= a.upper);
+    }
+    // A finite number that leaves the range of the arithmetic.
+    let a = memory.solver::<f64, 3>().solve(&Plain, &Corners(1e308), &Options::default());
+    assert!(a.lower.is_finite() && a.lower <= a.upper, "{:?} {} {}", a.plan, a.lower, a.upper);
+}

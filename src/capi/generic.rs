@@ -1,13 +1,17 @@
 //! What the entry points of both scalars share: checked pointers, callbacks as sets and gauges, and loops over run-time
 //! dimensions.
 
+use super::status::qdist_interrupt;
 use super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NONFINITE, QDIST_ERROR_NULL,
     QDIST_ERROR_STRUCT_SIZE, from_shape,
 };
+use super::symmetry::qdist_mirrored;
+use crate::NOT_FINITE;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
 use crate::support::{Failure, check_numbers, check_sizes, one_by_one};
+use core::cell::Cell;
 use core::ffi::c_void;
 
 /// The largest dimension.
@@ -109,6 +113,16 @@ pub fn first<S>(list: &[S], n: usize) -> Check<&[S]> {
     list.get(..n).ok_or(QDIST_ERROR_DIMENSION)
 }
 
+/// A list in an array, filled up with zeros.
+#[inline]
+pub fn padded<T: Real>(list: impl Iterator<Item = T>) -> [T; MAX_DIMENSION] {
+    let mut all = [T::zero(); MAX_DIMENSION];
+    for (to, x) in all.iter_mut().zip(list) {
+        *to = x;
+    }
+    all
+}
+
 /// `a.b`
 #[inline(always)]
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
@@ -206,32 +220,88 @@ pub unsafe fn ask<T: Real, const N: usize>(
     if code == 0 { Ok(one_by_one(&point)) } else { Err(Failure(code)) }
 }
 
+/// The interrupt callback of the options.
+#[derive(Clone, Copy)]
+pub struct Deadline {
+    function: qdist_interrupt,
+    user: *mut c_void,
+}
+
+impl Deadline {
+    /// None.
+    pub const NEVER: Deadline = Deadline { function: None, user: core::ptr::null_mut() };
+
+    /// # Safety
+    /// For the life of the value, the function may be called with `user`.
+    pub unsafe fn new(function: qdist_interrupt, user: *mut c_void) -> Self {
+        Self { function, user }
+    }
+
+    /// Runs a query with this deadline.
+    #[inline(always)]
+    pub fn during<R>(&self, query: impl FnOnce(Option<&dyn Fn() -> bool>) -> R) -> R {
+        match self.function {
+            // SAFETY: the promise of `new`.
+            Some(function) => query(Some(&|| unsafe { function(self.user) } != 0)),
+            None => query(None),
+        }
+    }
+}
+
+pub type VertexFn<T> = unsafe extern "C" fn(user: *mut c_void, index: u32, point: *mut T) -> i32;
+
+/// What a gauge struct of the caller says, NULL and 0 included.
+pub struct Parts<T> {
+    pub value: Option<ValueFn<T>>,
+    pub point: Option<SupportFn<T>>,
+    pub vertex: Option<VertexFn<T>>,
+    pub mirrored: qdist_mirrored,
+    pub user: *mut c_void,
+    pub extent: T,
+    pub inner_radius: T,
+    pub vertex_count: u32,
+}
+
 /// A gauge of the caller, as a [`Gauge`].
 pub struct CallbackGauge<T> {
+    parts: Parts<T>,
     function: ValueFn<T>,
-    user: *mut c_void,
     error: T,
+    /// The code of the vertex function that failed, else 0.
+    code: Cell<i32>,
 }
 
 impl<T: Real> CallbackGauge<T> {
     /// Checks the numbers. Where the extent is not known, the values along the axes bound it.
     ///
     /// # Safety
-    /// For the life of the value, the function may be called with `user` and a direction of dimension `N`.
-    pub unsafe fn new<const N: usize>(function: Option<ValueFn<T>>, user: *mut c_void, extent: T) -> Check<Self> {
-        let function = function.ok_or(QDIST_ERROR_NULL)?;
-        let mut gauge = Self { function, user, error: T::zero() };
-        let mut extent = length(extent)?;
+    /// For the life of the value, the functions may be called with `user` in dimension `N`.
+    pub unsafe fn new<const N: usize>(parts: Parts<T>) -> Check<Self> {
+        let function = parts.value.ok_or(QDIST_ERROR_NULL)?;
+        if parts.vertex_count > 0 && parts.vertex.is_none() {
+            return Err(QDIST_ERROR_NULL);
+        }
+        let mut extent = length(parts.extent)?;
+        if length(parts.inner_radius)? > extent && extent > T::zero() {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let mut gauge = Self { parts, function, error: T::zero(), code: Cell::new(0) };
         if !(extent > T::zero()) {
             let mut corner = Vector::<T, N>::zeros();
             let mut axis = Vector::<T, N>::zeros();
+            let mut empty = true;
             for i in 0..N {
                 for sign in [T::one(), -T::one()] {
                     axis[i] = sign;
                     // A value that is not finite ends the query when the solver meets one.
-                    corner[i] = corner[i].at_least(gauge.ask(&axis));
+                    let value = gauge.ask(&axis);
+                    corner[i] = corner[i].at_least(value);
+                    empty &= value == T::zero();
                 }
                 axis[i] = T::zero();
+            }
+            if empty {
+                return Err(QDIST_ERROR_ARGUMENT);
             }
             extent = norm(&corner);
         }
@@ -239,10 +309,15 @@ impl<T: Real> CallbackGauge<T> {
         Ok(gauge)
     }
 
+    /// The code of the vertex function, if that ended the query with `failure`.
+    pub fn code(&self, failure: i32) -> i32 {
+        if failure == NOT_FINITE && self.code.get() != 0 { self.code.get() } else { failure }
+    }
+
     #[inline(always)]
     fn ask<const N: usize>(&self, u: &Vector<T, N>) -> T {
         // SAFETY: the promise of `new`; the vector is N numbers in a row.
-        unsafe { (self.function)(self.user, u.as_ptr()) }
+        unsafe { (self.function)(self.parts.user, u.as_ptr()) }
     }
 }
 
@@ -251,7 +326,50 @@ impl<T: Real, const N: usize> Gauge<T, N> for CallbackGauge<T> {
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(self.ask(u))
     }
+    fn mapping(&self, u: &Vector<T, N>) -> Option<Vector<T, N>> {
+        // SAFETY: the promise of `new`.
+        unsafe { ask(self.parts.point, self.parts.user, u) }.ok()
+    }
+    fn vertex_count(&self) -> usize {
+        self.parts.vertex_count as usize
+    }
+    /// NaN, which no ray is shot at, when the function fails.
+    fn vertex(&self, index: usize) -> Vector<T, N> {
+        let mut point = Vector::<T, N>::from_element(T::of(f64::NAN));
+        if let Some(function) = self.parts.vertex {
+            // SAFETY: the promise of `new`; the vector is N numbers in a row.
+            let code = unsafe { function(self.parts.user, index as u32, point.as_mut_ptr()) };
+            if code != 0 {
+                self.code.set(code);
+            }
+            if code != 0 || coordinates(point.as_slice()).is_err() {
+                point = Vector::from_element(T::of(f64::NAN));
+            }
+        }
+        point
+    }
+    fn inner_radius(&self) -> T {
+        self.parts.inner_radius
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        // SAFETY: the promise of `new`.
+        unsafe { is_mirrored(self.parts.mirrored, self.parts.user, signs) }
+    }
     fn error(&self) -> T {
         self.error
     }
+}
+
+/// Asks a mirror function of the caller.
+///
+/// # Safety
+/// The function may be called with `user`.
+pub unsafe fn is_mirrored(function: qdist_mirrored, user: *mut c_void, signs: u8) -> bool {
+    // SAFETY: the caller's promise.
+    function.is_some_and(|function| unsafe { function(user, u32::from(signs)) } == 1)
+}
+
+/// The mirror function of sets that are symmetric in every coordinate.
+pub unsafe extern "C" fn mirrored_always(_user: *mut c_void, _signs: u32) -> i32 {
+    1
 }

@@ -1,6 +1,6 @@
 //! The C ABI: `include/qdist.h`, generated from this module by `make header`.
 //!
-//! * [`status`], [`version`]: codes and their names.
+//! * [`status`], [`symmetry`], [`version`]: codes and their names, and callbacks without a scalar.
 //! * [`handle`]: a solver in the caller's memory.
 //! * [`generic`]: what the entry points of both scalars share. Checked pointers, callbacks as a
 //!   [`Support`](crate::support::Support) and a [`Gauge`](crate::qset::Gauge), and loops over run-time dimensions.

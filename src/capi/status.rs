@@ -1,14 +1,14 @@
-//! STATUS AND OUTCOME
+//! STATUS, OUTCOME AND PLAN
 //!
-//! Two questions, two types. A status says whether the call worked. An outcome says what the run concluded, and whatever
-//! it concluded, the bracket holds.
+//! Three questions, three types. A status says whether the call worked. An outcome says what the run concluded, and whatever
+//! it concluded, the bracket holds. A plan says how.
 
-use crate::Outcome;
 use crate::depth::BodyError;
 use crate::prepare::GraphError;
 use crate::support::ShapeError;
 use crate::workspace::WorkspaceError;
-use core::ffi::c_char;
+use crate::{Outcome, Plan};
+use core::ffi::{c_char, c_void};
 
 /// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
 /// with QDIST_ERROR_CALLBACK.
@@ -59,7 +59,8 @@ pub const QDIST_SEPARATED: qdist_outcome = 3;
 pub const QDIST_TOUCHING: qdist_outcome = 4;
 /// The bracket cannot be narrowed in this scalar type; the tolerance asked for more.
 pub const QDIST_PRECISION: qdist_outcome = 5;
-/// The solver's memory is full.
+/// The solver's memory is full. (qdist_solve goes on cone by cone, QDIST_PLAN_CONES, where there are 3 * dimension vertices and
+/// 4 * dimension facets.)
 pub const QDIST_CAPACITY: qdist_outcome = 6;
 /// The iteration limit is reached.
 pub const QDIST_ITERATIONS: qdist_outcome = 7;
@@ -67,8 +68,28 @@ pub const QDIST_ITERATIONS: qdist_outcome = 7;
 pub const QDIST_DEGENERATE: qdist_outcome = 8;
 /// A callback failed; the status is QDIST_ERROR_CALLBACK.
 pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
-/// The caller's deadline has passed.
+/// `interrupt` of the options said so.
 pub const QDIST_INTERRUPTED: qdist_outcome = 10;
+
+/// How was the query answered? What A and Q are decides it.
+pub type qdist_plan = i32;
+
+/// Expansion of one polytope, best first.
+pub const QDIST_PLAN_EXPANSION: qdist_plan = 0;
+/// By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
+pub const QDIST_PLAN_DISTANCE: qdist_plan = 1;
+/// Polytopal Q: one ray per vertex of Q, no polytope, and no memory of the solver.
+pub const QDIST_PLAN_RAYS: qdist_plan = 2;
+/// The polytope outgrew the memory: expansion cone by cone in the same memory.
+pub const QDIST_PLAN_CONES: qdist_plan = 3;
+/// The bracket of the last call, moved: nothing was expanded.
+pub const QDIST_PLAN_WARM: qdist_plan = 4;
+
+/// Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
+/// clock or at a flag that an interrupt handler sets.
+///
+/// user: interrupt_user of the options.
+pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
 /// number. Callbacks must not return it, nor INT32_MIN + 1.
@@ -119,6 +140,20 @@ pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char 
     .as_ptr()
 }
 
+/// The name of a plan, e.g. "rays". A static string, never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_plan_string(plan: qdist_plan) -> *const c_char {
+    match plan {
+        QDIST_PLAN_EXPANSION => c"expansion",
+        QDIST_PLAN_DISTANCE => c"distance",
+        QDIST_PLAN_RAYS => c"rays",
+        QDIST_PLAN_CONES => c"cones",
+        QDIST_PLAN_WARM => c"warm",
+        _ => c"unknown plan",
+    }
+    .as_ptr()
+}
+
 /// `Ok`, or the status that says what is wrong.
 pub(super) type Check<T = ()> = Result<T, qdist_status>;
 
@@ -140,6 +175,17 @@ pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
         Outcome::Degenerate => QDIST_DEGENERATE,
         Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
         Outcome::Interrupted => QDIST_INTERRUPTED,
+    }
+}
+
+pub(super) fn plan(plan: Plan) -> qdist_plan {
+    match plan {
+        // (Two bodies on one axis are measured by qdist_depth3 only, which does not tell.)
+        Plan::Expansion | Plan::Meridian => QDIST_PLAN_EXPANSION,
+        Plan::Distance => QDIST_PLAN_DISTANCE,
+        Plan::Rays => QDIST_PLAN_RAYS,
+        Plan::Cones => QDIST_PLAN_CONES,
+        Plan::Warm => QDIST_PLAN_WARM,
     }
 }
 

@@ -99,6 +99,7 @@ impl<T: Real, const N: usize> Ray<T, N> {
         if pivot < largest * T::ROUNDOFF.root() {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
         }
+        let mut row = Vector::<T, N>::zeros();
         for i in 0..N {
             if i == out {
                 let pivot = T::one() / shares[i];
@@ -107,13 +108,6 @@ impl<T: Real, const N: usize> Ray<T, N> {
                 self.weights[i] = step;
                 for j in 0..N {
                     self.inverse[(i, j)] *= pivot;
-                }
-            }
-        }
-        let mut row = [T::zero(); N];
-        for i in 0..N {
-            for j in 0..N {
-                if i == out {
                     row[j] = self.inverse[(i, j)];
                 }
             }

@@ -20,7 +20,7 @@ use super::shoot::{Shot, shoot};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::query::Query;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, finite};
 use crate::simplex::Simplex;
 use crate::support::Failure;
 
@@ -43,6 +43,10 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
     let count = query.rays();
     if count == 0 {
         return Ok(None);
+    }
+    if !(query.size() > T::zero()) {
+        let first = query.first_direction();
+        query.support(&first)?; // A does not know its extent: the first corners need a size.
     }
     let mut reserve = T::zero();
     let mut found: Option<Crossings<T, N>> = None;
@@ -87,6 +91,12 @@ fn shoot_all<T: Real, const N: usize>(
     let mut last: Option<Ray<T, N>> = None;
     for index in 0..count {
         let target = query.ray(index);
+        if !finite(&target) {
+            return Err(Failure(crate::NOT_FINITE));
+        }
+        if target.iter().all(|&x| x == T::zero()) {
+            continue; // The origin is in A whenever d >= 0.
+        }
         let (ray, shot) =
             shoot(query, &target, last.take(), T::zero(), |query| query.level(gap, reserve + query.reserve(4)))?;
         if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
@@ -108,7 +118,7 @@ struct Rays<T, const N: usize> {
 
 impl<T: Real, const N: usize> Rays<T, N> {
     fn take(&mut self, ray: &Ray<T, N>) -> bool {
-        let Some((t, miss)) = ray.reach() else { return false };
+        let Some((t, miss)) = ray.reach().filter(|(t, miss)| t.finite() && miss.finite()) else { return false };
         self.error = self.error.at_least(miss);
         if t < self.least {
             self.least = t;

@@ -3,7 +3,7 @@
 use super::ray::Ray;
 use crate::answer::Stop;
 use crate::query::Query;
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, Vector, finite, norm};
 use crate::support::Failure;
 
 /// More steps than any ray takes: rounding ends them earlier.
@@ -121,7 +121,7 @@ pub(crate) fn descend<T: Real, const N: usize>(
         }
         let plane = ray.plane();
         direction = plane * (T::one() / norm(&plane));
-        if !(query.ratio() < before - before * query.options.relative.at_least(T::of(1e-9))) {
+        if !finite(&direction) || !(query.ratio() < before - before * query.options.relative.at_least(T::of(1e-9))) {
             break;
         }
         last = Some(ray);

@@ -114,6 +114,7 @@ pub struct EllipsoidGauge<T, const N: usize> {
     /// Column i is semi_i / size times column i of R.
     columns: SMatrix<T, N, N>,
     size: T,
+    inner: T,
     error: T,
 }
 
@@ -138,7 +139,12 @@ impl<T: Real, const N: usize> EllipsoidGauge<T, N> {
         }
         let columns = SMatrix::<T, N, N>::from_fn(|i, j| semi_axes[j] / size * rotation[(i, j)]);
         let frobenius = columns.iter().fold(T::zero(), |s, &x| s + x * x).root();
-        Ok(Self { columns, size, error: roundings(2 * N + 6, size * frobenius) })
+        // The least singular value of R D: |R^T x| >= sqrt(1 - |R^T R - I|) |x|, for any matrix.
+        let gram = rotation.tr_mul(&rotation) - SMatrix::identity();
+        let skew = gram.iter().fold(T::zero(), |s, &x| s + x * x).root() + T::count(4 * N * N) * T::ROUNDOFF;
+        let least = semi_axes.iter().fold(size, |least, &x| least.at_most(x));
+        let inner = (least - least * skew).at_least(T::zero());
+        Ok(Self { columns, size, inner, error: roundings(2 * N + 6, size * frobenius) })
     }
 }
 
@@ -164,6 +170,9 @@ impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
             let flips = |flipped: bool| (0..N).any(|i| column[i] != T::zero() && (signs >> i & 1 == 1) == flipped);
             !(flips(true) && flips(false))
         })
+    }
+    fn inner_radius(&self) -> T {
+        self.inner
     }
     fn error(&self) -> T {
         self.error
@@ -476,6 +485,27 @@ mod tests {
         check(&Ball::new(1e9f32).unwrap(), |u| 1e9 * u.norm());
         check(&GaugeFn::new(|u: &Vector<f32, 3>| Ok(u.x.abs()), 0.0).unwrap(), |u| u.x.abs());
         check(&&Ball::<f32>::unit(), |u| u.norm());
+    }
+
+    #[test]
+    fn inner_balls_are_inside() {
+        let (s, c) = 0.7f32.sin_cos();
+        for off in [0.0, 1e-4, -1e-3] {
+            let r = SMatrix::<f32, 3, 3>::new(c, -s, 0.0, s, c, off, 0.0, off, 1.0);
+            for semi in [[1.0f32, 2.0, 3.0], [1e-6, 1.0, 1.0], [0.5, 0.5, 0.5], [0.0, 1.0, 2.0]] {
+                let (v, least) = (Vector::from(semi), semi[0]);
+                let turned = EllipsoidGauge::new(v, r).unwrap();
+                let gauges: [&dyn Gauge<f32, 3>; 3] =
+                    [&turned, &BoxGauge::new(v).unwrap(), &CrossPolytope::new(v).unwrap()];
+                assert!(turned.inner_radius() > least * 0.99 || least == 0.0);
+                for gauge in gauges {
+                    for u in directions(500) {
+                        let u = u / u.dot(&u).sqrt();
+                        assert!(gauge.value(&u).unwrap() >= gauge.inner_radius() - gauge.error());
+                    }
+                }
+            }
+        }
     }
 
     #[test]

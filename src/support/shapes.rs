@@ -190,6 +190,9 @@ impl<T: Real, const N: usize> Support<T, N> for Point<T, N> {
     fn extent(&self) -> T {
         length(&self.at)
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        (0..N).all(|i| signs >> i & 1 == 0 || self.at[i] == T::zero())
+    }
     fn error(&self) -> T {
         T::zero()
     }
@@ -235,6 +238,9 @@ impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
     }
     fn symmetry(&self) -> Symmetry {
         Symmetry::Full
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         T::zero()
@@ -282,6 +288,9 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     }
     fn extent(&self) -> T {
         length(&self.half)
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         T::zero()
@@ -381,6 +390,9 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
             [x, y, _] if x == y => Symmetry::Axis,
             _ => Symmetry::None,
         }
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         T::count(2 * N + 16) * T::ROUNDOFF * largest(&self.semi)

@@ -51,6 +51,9 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
     }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
+    }
     fn error(&self) -> T {
         T::count(8) * T::ROUNDOFF * self.radius
     }
@@ -102,6 +105,9 @@ impl<T: Real> Support<T, 3> for Capsule<T> {
     }
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
+    }
+    fn mirrored(&self, _signs: u8) -> bool {
+        true
     }
     fn error(&self) -> T {
         T::zero()
@@ -169,6 +175,9 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     }
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        signs & 4 == 0
     }
     fn error(&self) -> T {
         T::count(16) * T::ROUNDOFF * (self.radius + self.half_height)

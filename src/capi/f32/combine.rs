@@ -5,7 +5,8 @@
 //! set that is made of them.
 
 use super::super::generic::{
-    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, length, shared, tiny,
+    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, is_mirrored, length,
+    shared, tiny,
 };
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
@@ -82,6 +83,7 @@ pub unsafe extern "C" fn qdist_set_linear_f32(set: *mut qdist_set_f32, map: *con
         let made = qdist_set_f32 {
             support: Some(qdist_linear_support_f32),
             exhaustive: shortcuts,
+            mirrored: None,
             user: map.cast_mut().cast(),
             radius: 0.0,
             extent: reach,
@@ -194,6 +196,7 @@ unsafe fn fill_pair(
     let made = qdist_set_f32 {
         support: Some(support),
         exhaustive: a.exhaustive.or(b.exhaustive).map(|_| exhaustive),
+        mirrored: a.mirrored.and(b.mirrored).and(Some(pair_mirrored)),
         user: pair.cast_mut().cast(),
         radius: a.radius + b.radius,
         extent,
@@ -203,6 +206,22 @@ unsafe fn fill_pair(
     // SAFETY: checked.
     unsafe { set.write(made) };
     Ok(())
+}
+
+/// The mirror function of sums and differences: a change of sign that both parts allow.
+unsafe extern "C" fn pair_mirrored(user: *mut c_void, signs: u32) -> i32 {
+    let ask = || {
+        // SAFETY: what the header asks of the caller.
+        let (a, b) = unsafe {
+            let pair = shared(user.cast::<qdist_pair_f32>().cast_const())?;
+            (shared(pair.a)?, shared(pair.b)?)
+        };
+        // SAFETY: what the header asks of the caller.
+        let mirrored = |set: &qdist_set_f32| unsafe { is_mirrored(set.mirrored, set.user, signs as u8) };
+        Ok(mirrored(a) && mirrored(b))
+    };
+    let answer: Check<bool> = ask();
+    i32::from(answer.unwrap_or(false))
 }
 
 /// Asks a part for its point along `u`.

@@ -8,3 +8,5 @@ pub mod query;
 pub mod sets;
 pub mod shapes;
 pub mod solver;
+pub mod span;
+pub mod warm;

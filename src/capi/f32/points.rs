@@ -57,6 +57,7 @@ pub unsafe extern "C" fn qdist_set_points_f32(set: *mut qdist_set_f32, shape: *c
         let made = qdist_set_f32 {
             support: Some(qdist_points_support_f32),
             exhaustive: None,
+            mirrored: None,
             user: shape.cast_mut().cast(),
             radius: 0.0,
             extent,
@@ -254,6 +255,7 @@ unsafe fn fill(
     let set = qdist_set_f32 {
         support: if center.is_some() { far } else { near },
         exhaustive: if center.is_some() { exhaustive_far } else { exhaustive_near },
+        mirrored: None,
         user: user.cast_mut(),
         radius: 0.0,
         extent: all.extent().at_least(tiny()),

@@ -6,11 +6,11 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{aligned, ask, coordinates, lengths, shared};
+use super::super::generic::{aligned, ask, coordinates, is_mirrored, lengths, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
-use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use crate::Body;
 use crate::depth::{BodyError, Matrix3};
 use crate::scalar::{Real, Vector};
@@ -37,7 +37,9 @@ pub struct qdist_set_f32 {
     /// NULL; or, if `support` takes shortcuts and may miss the farthest point, a slower function that does not. It checks
     /// the direction that is about to be reported.
     pub exhaustive: qdist_support_f32,
-    /// First argument of both functions.
+    /// NULL: not known. Which mirror images of the core are the core itself.
+    pub mirrored: qdist_mirrored,
+    /// First argument of all functions.
     pub user: *mut c_void,
     /// Radius of the ball swept over the core, >= 0.
     pub radius: f32,
@@ -120,6 +122,10 @@ impl<const N: usize> Support<f32, N> for CheckedSet {
     }
     fn extent(&self) -> f32 {
         self.0.extent
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        // SAFETY: the promise of `checked`.
+        unsafe { is_mirrored(self.0.mirrored, self.0.user, signs) }
     }
     fn error(&self) -> f32 {
         self.0.stated_error(N)

@@ -12,9 +12,9 @@
 //! that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
 //! shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set.
 
-use super::super::generic::{aligned, shared, tiny};
+use super::super::generic::{aligned, mirrored_always, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
-use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use super::sets::{arguments, qdist_body_f32, qdist_set_f32, qdist_support_f32};
 use crate::scalar::{Real, Vector};
 use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
@@ -111,10 +111,16 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         Symmetry::Axis => QDIST_SYMMETRY_AXIS,
         Symmetry::Full => QDIST_SYMMETRY_FULL,
     };
+    let mirrored: qdist_mirrored = match (set.mirrored(7), set.mirrored(3)) {
+        (true, _) => Some(mirrored_always),
+        (_, true) => Some(mirrored_sideways),
+        _ => None,
+    };
     let rolling_radius = set.rolling_radius();
     let set = qdist_set_f32 {
         support,
         exhaustive: None,
+        mirrored,
         user: shape.cast_mut().cast(),
         radius: set.radius(),
         extent: set.extent().at_least(tiny()),
@@ -124,6 +130,11 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
     // SAFETY: not NULL, aligned, and the caller's promise.
     unsafe { body.write(qdist_body_f32 { symmetry, rolling_radius, ..qdist_body_f32::at_origin(set) }) };
     Ok(())
+}
+
+/// The mirror function of solids of revolution.
+unsafe extern "C" fn mirrored_sideways(_user: *mut c_void, signs: u32) -> i32 {
+    i32::from(signs & 4 == 0)
 }
 
 /// Asks a shape. Its sizes were checked when the body was made.

@@ -5,10 +5,10 @@
 //! number of queries; it keeps nothing between them. There is nothing to free. The memory holds no addresses, so that a solver
 //! may be moved with its memory.
 //!
-//! Capacities: `max_vertices` bounds the points that a query may add, `max_facets` the facets at one time. In
+//! Capacities: `max_vertices` bounds the points that are stored, `max_facets` the facets at one time. In
 //! dimension 3, facets = 2 * vertices suffices; in dimension 6 a hundred facets for a vertex is not
-//! rare. When either is full the query ends with QDIST_CAPACITY and a bracket that is still true; results
-//! say how much was used.
+//! rare. When either is full, qdist_solve goes on cone by cone in the same memory, and qdist_depth3 ends with
+//! QDIST_CAPACITY and a bracket that is still true; results say how much was used.
 
 use super::super::generic::aligned;
 use super::super::handle::{self, qdist_solver};

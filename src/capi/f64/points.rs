@@ -56,6 +56,7 @@ pub unsafe extern "C" fn qdist_set_points_f64(set: *mut qdist_set_f64, shape: *c
         let made = qdist_set_f64 {
             support: Some(qdist_points_support_f64),
             exhaustive: None,
+            mirrored: None,
             user: shape.cast_mut().cast(),
             radius: 0.0,
             extent,
@@ -253,6 +254,7 @@ unsafe fn fill(
     let set = qdist_set_f64 {
         support: if center.is_some() { far } else { near },
         exhaustive: if center.is_some() { exhaustive_far } else { exhaustive_near },
+        mirrored: None,
         user: user.cast_mut(),
         radius: 0.0,
         extent: all.extent().at_least(tiny()),

@@ -6,21 +6,36 @@
 //! -DBL_MAX or DBL_MAX (float: FLT_MAX).
 //!
 //! The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
+//!
+//! qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
+//! 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
+//! `interrupt`.
+//!
+//! The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
+//! gives the derivative with respect to any parameter p of A or Q from quantities of the result:
+//!
+//!   dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
+//!
+//! with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
+//! there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+//! It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
+//! one-sided derivatives, each the least of those at all minimisers.
 
 use super::super::generic::{
-    CallbackGauge, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, known_size, length, shared,
+    Deadline, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, known_size, length, padded, shared,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, QDIST_ERROR_DIMENSION, from_body, outcome, qdist_outcome,
-    qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, outcome, plan, qdist_interrupt, qdist_outcome,
+    qdist_plan, qdist_status, status,
 };
-use super::gauges::qdist_gauge_f64;
-use super::sets::{qdist_body_f64, qdist_set_f64};
-use crate::qset::Ball;
+use super::gauges::{CheckedGauge, qdist_gauge_f64};
+use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
 use crate::scalar::{Real, Vector};
+use crate::solver::Solver;
 use crate::support::{alone, one_by_one};
 use crate::{Answer, Depth, Options, Outcome};
+use core::ffi::c_void;
 
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.
@@ -29,8 +44,12 @@ use crate::{Answer, Depth, Options, Outcome};
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most points to add; 0: as many as the solver holds.
+    /// The most points to add, over all plans; 0: 50,000, less than a second in dimension 6.
     pub max_iterations: u32,
+    /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
+    pub interrupt: qdist_interrupt,
+    /// First argument of `interrupt`.
+    pub interrupt_user: *mut c_void,
     /// Stop when upper - lower <= max(absolute, relative * |d|). Both >= 0, not both 0. Default 0.
     pub absolute: f64,
     /// See `absolute`. Default: 1e-6 in double, 1e-4 in float.
@@ -71,7 +90,8 @@ pub struct qdist_depth_f64 {
     pub iterations: u32,
     /// Calls of each body's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     pub vertices_used: u32,
     pub facets_used: u32,
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
@@ -86,12 +106,26 @@ pub struct qdist_result_f64 {
     pub struct_size: u32,
     /// What was concluded.
     pub outcome: qdist_outcome,
+    /// How.
+    pub plan: qdist_plan,
+    /// 1: the minimiser is not unique, to the tolerance; see `rival`. 0: no second one was met.
+    pub has_rival: u32,
     /// Bracket of d = max { d : d * Q inside A }, in units of Q; below 0 it is minus the Euclidean distance of A from the
-    /// origin, for every Q.
+    /// origin, in units of the radius where Q is a ball.
     pub lower: f64,
     pub upper: f64,
     /// Unit vector u that proves `upper`: h_A(u) / h_Q(u). The weakest direction of A. Unused numbers are 0.
     pub direction: [f64; 6],
+    /// The point of A (its ball included) that is farthest along `direction`.
+    pub support: [f64; 6],
+    /// h_Q(direction).
+    pub gauge: f64,
+    /// With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
+    pub rival: [f64; 6],
+    /// Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
+    pub weights: [f64; 7],
+    /// Coordinate k of point i is points[i * (dimension of the solver) + k].
+    pub points: [f64; 42],
     /// Evidence for `lower`: so many points of A's core, in `points` and `weights`; at most dimension + 1.
     pub point_count: u32,
     /// Affine dimension of A's core, as far as it was found out.
@@ -100,15 +134,15 @@ pub struct qdist_result_f64 {
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,
-    /// A solver with so many vertices and facets would have done, unless the outcome is QDIST_CAPACITY or QDIST_ITERATIONS.
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     pub vertices_used: u32,
     pub facets_used: u32,
+    /// With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.
+    pub cones: u32,
+    pub splits: u32,
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     pub callback_code: i32,
-    /// Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
-    pub weights: [f64; 7],
-    /// Coordinate k of point i is points[i * (dimension of the solver) + k].
-    pub points: [f64; 42],
 }
 
 /// Writes the defaults.
@@ -119,6 +153,8 @@ pub unsafe extern "C" fn qdist_options_default_f64(options: *mut qdist_options_f
         let default = qdist_options_f64 {
             struct_size: size_of::<qdist_options_f64>() as u32,
             max_iterations: 0,
+            interrupt: None,
+            interrupt_user: core::ptr::null_mut(),
             absolute: 0.0,
             relative: f64::RELATIVE_TOLERANCE,
             threshold: 0.0,
@@ -157,7 +193,9 @@ pub unsafe extern "C" fn qdist_depth3_f64(
         // Taken by reference out of their `Result`s: to move a large struct that was just written takes long.
         let (a, b) = (a.place(), b.place());
         let depth = match (&a, &b, &options) {
-            (Ok(a), Ok(b), Ok(options)) => solver.depth(a, b, options),
+            (Ok(a), Ok(b), Ok((options, deadline))) => {
+                deadline.during(|interrupt| solver.depth_until(a, b, options, interrupt))
+            }
             (_, _, Err(status)) => return Err(*status),
             (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),
         };
@@ -234,13 +272,13 @@ pub unsafe extern "C" fn qdist_solve6_f64(
     status(unsafe { solve::<6>(solver, a, q, options, result) })
 }
 
-/// The options as the solver knows them.
+/// The options as the solver knows them, and the deadline.
 ///
 /// # Safety
-/// If not NULL and aligned, `options` is valid for reads.
-unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<Options<f64, N>> {
+/// If not NULL and aligned, `options` is valid for reads; during the query `interrupt` may be called.
+unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<(Options<f64, N>, Deadline)> {
     if options.is_null() {
-        return Ok(Options::default());
+        return Ok((Options::default(), Deadline::NEVER));
     }
     // SAFETY: the caller's promise.
     let options = unsafe { shared(options) }?;
@@ -262,7 +300,9 @@ unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<Op
     } else {
         None
     };
-    Ok(Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess })
+    // SAFETY: the caller's promise.
+    let deadline = unsafe { Deadline::new(options.interrupt, options.interrupt_user) };
+    Ok((Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess }, deadline))
 }
 
 fn conclude(outcome: Outcome) -> Check {
@@ -287,26 +327,31 @@ fn from_depth(depth: &Depth<f64>) -> qdist_depth_f64 {
     }
 }
 
-fn from_answer<const N: usize>(answer: &Answer<f64, N>) -> qdist_result_f64 {
+fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) -> qdist_result_f64 {
+    let vector = |v: &Vector<f64, N>| padded(v.iter().copied());
     let mut result = qdist_result_f64 {
         struct_size: size_of::<qdist_result_f64>() as u32,
         outcome: outcome(answer.outcome),
+        plan: plan(answer.plan),
+        has_rival: u32::from(answer.rival.is_some()),
         lower: answer.lower,
         upper: answer.upper,
-        direction: [0.0; MAX_DIMENSION],
+        direction: vector(&answer.direction),
+        support: vector(&answer.support),
+        gauge: answer.gauge,
+        rival: answer.rival.as_ref().map_or([0.0; MAX_DIMENSION], vector),
+        weights: [0.0; MAX_POINTS],
+        points: [0.0; MAX_POINTS * MAX_DIMENSION],
         point_count: answer.witness.corners.len() as u32,
         dimension: answer.dimension as u32,
         iterations: answer.iterations,
         support_calls: answer.support_calls,
         vertices_used: answer.vertices as u32,
         facets_used: answer.facets as u32,
-        callback_code: answer.failure,
-        weights: [0.0; MAX_POINTS],
-        points: [0.0; MAX_POINTS * MAX_DIMENSION],
+        cones: answer.cones,
+        splits: answer.splits,
+        callback_code: code,
     };
-    for (to, &x) in result.direction.iter_mut().zip(&answer.direction) {
-        *to = x;
-    }
     for (to, corner) in result.weights.iter_mut().zip(&answer.witness.corners) {
         *to = corner.weight;
     }
@@ -315,6 +360,50 @@ fn from_answer<const N: usize>(answer: &Answer<f64, N>) -> qdist_result_f64 {
         *to = x;
     }
     result
+}
+
+/// A query in dimension `N` whose arguments have passed the checks.
+pub(super) struct Asked<'w, const N: usize> {
+    pub solver: Solver<'w, f64, N>,
+    pub a: &'w CheckedSet,
+    pub q: CheckedGauge,
+    pub options: Options<f64, N>,
+    pub deadline: Deadline,
+    result: *mut qdist_result_f64,
+}
+
+impl<const N: usize> Asked<'_, N> {
+    /// Checks the arguments of a query.
+    ///
+    /// # Safety
+    /// What the header asks of the caller of `qdist_solve`, for the life of the value.
+    #[inline(always)]
+    pub unsafe fn new(
+        solver: *mut qdist_solver,
+        a: *const qdist_set_f64,
+        q: *const qdist_gauge_f64,
+        options: *const qdist_options_f64,
+        result: *mut qdist_result_f64,
+    ) -> Check<Self> {
+        aligned(result)?;
+        // SAFETY: the caller's promise.
+        unsafe {
+            let a = shared(a)?;
+            let solver = handle::open::<f64, N>(solver)?;
+            known_size((&raw const (*result).struct_size).read(), size_of::<qdist_result_f64>())?;
+            let a = a.checked::<N>()?;
+            let (options, deadline) = convert::<N>(options)?;
+            Ok(Self { solver, a, q: CheckedGauge::new::<N>(q)?, options, deadline, result })
+        }
+    }
+
+    /// Writes the result.
+    #[inline(always)]
+    pub fn conclude(&self, answer: &Answer<f64, N>) -> Check {
+        // SAFETY: `new` has checked it.
+        unsafe { self.result.write(from_answer(answer, self.q.code(answer.failure))) };
+        conclude(answer.outcome)
+    }
 }
 
 /// # Safety
@@ -326,44 +415,9 @@ unsafe fn solve<const N: usize>(
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> Check {
-    aligned(result)?;
     // SAFETY: the caller's promise.
-    let (mut solver, a, options) = unsafe {
-        let a = shared(a)?;
-        let solver = handle::open::<f64, N>(solver)?;
-        known_size((&raw const (*result).struct_size).read(), size_of::<qdist_result_f64>())?;
-        (solver, a.checked::<N>()?, convert::<N>(options)?)
-    };
-    // SAFETY: the caller's promise.
-    let answer = match unsafe { gauge::<N>(q) }? {
-        Either::Ball(ball) => solver.solve(a, &ball, &options),
-        Either::Other(gauge) => solver.solve(a, &gauge, &options),
-    };
-    // SAFETY: checked.
-    unsafe { result.write(from_answer(&answer)) };
-    conclude(answer.outcome)
-}
-
-enum Either {
-    Ball(Ball<f64>),
-    Other(CallbackGauge<f64>),
-}
-
-/// # Safety
-/// What the header asks of the caller of `qdist_solve`.
-unsafe fn gauge<const N: usize>(q: *const qdist_gauge_f64) -> Check<Either> {
-    if q.is_null() {
-        return Ok(Either::Ball(Ball::unit()));
-    }
-    // SAFETY: the caller's promise.
-    let q = unsafe { shared(q) }?;
-    if q.dimension != 0 && q.dimension as usize != N {
-        return Err(QDIST_ERROR_DIMENSION);
-    }
-    let radius = length(q.ball_radius)?;
-    if radius > 0.0 {
-        return Ball::new(radius).map(Either::Ball).map_err(super::super::status::from_shape);
-    }
-    // SAFETY: the caller's promise.
-    unsafe { CallbackGauge::new::<N>(q.value, q.user, q.extent) }.map(Either::Other)
+    let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
+    let Asked { solver, a, q, options, deadline, .. } = &mut asked;
+    let answer = deadline.during(|interrupt| solver.solve_until(*a, q.gauge(), options, interrupt));
+    asked.conclude(&answer)
 }

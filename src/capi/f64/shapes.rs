@@ -11,9 +11,9 @@
 //! that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
 //! shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set.
 
-use super::super::generic::{aligned, shared, tiny};
+use super::super::generic::{aligned, mirrored_always, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
-use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE};
+use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
 use crate::scalar::{Real, Vector};
 use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
@@ -110,10 +110,16 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         Symmetry::Axis => QDIST_SYMMETRY_AXIS,
         Symmetry::Full => QDIST_SYMMETRY_FULL,
     };
+    let mirrored: qdist_mirrored = match (set.mirrored(7), set.mirrored(3)) {
+        (true, _) => Some(mirrored_always),
+        (_, true) => Some(mirrored_sideways),
+        _ => None,
+    };
     let rolling_radius = set.rolling_radius();
     let set = qdist_set_f64 {
         support,
         exhaustive: None,
+        mirrored,
         user: shape.cast_mut().cast(),
         radius: set.radius(),
         extent: set.extent().at_least(tiny()),
@@ -123,6 +129,11 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
     // SAFETY: not NULL, aligned, and the caller's promise.
     unsafe { body.write(qdist_body_f64 { symmetry, rolling_radius, ..qdist_body_f64::at_origin(set) }) };
     Ok(())
+}
+
+/// The mirror function of solids of revolution.
+unsafe extern "C" fn mirrored_sideways(_user: *mut c_void, signs: u32) -> i32 {
+    i32::from(signs & 4 == 0)
 }
 
 /// Asks a shape. Its sizes were checked when the body was made.

@@ -95,6 +95,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn symmetry(&self) -> Symmetry {
         (**self).symmetry()
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        (**self).mirrored(signs)
+    }
     fn error(&self) -> T {
         (**self).error()
     }

@@ -55,6 +55,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
     fn extent(&self) -> T {
         above(self.shape.extent() * self.factor, 0)
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.shape.mirrored(signs)
+    }
     fn error(&self) -> T {
         self.factor * pair_error(self.shape.error(), self.shape.extent())
     }
@@ -117,6 +120,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     }
     fn symmetry(&self) -> Symmetry {
         self.shape.symmetry()
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.shape.mirrored(signs)
     }
     fn error(&self) -> T {
         self.shape.error()

@@ -54,6 +54,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         let (a, b) = (self.a.extent(), self.b.extent());
         if_known(&[a, b], a + b)
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.a.mirrored(signs) && self.b.mirrored(signs)
+    }
     fn error(&self) -> T {
         pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
     }
@@ -117,6 +120,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         let (a, b) = (self.a.extent(), self.b.extent());
         if_known(&[a, b], a + b)
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.a.mirrored(signs) && self.b.mirrored(signs)
+    }
     fn error(&self) -> T {
         pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
     }
@@ -148,6 +154,43 @@ mod tests {
             assert!((p.dot(&u) - all(-1.0)).abs() < 1e-15 * 10.0);
             assert_eq!(witness, pa.support(&u).unwrap());
             assert_eq!(p, difference.exhaustive(&u).unwrap());
+        }
+    }
+
+    #[test]
+    fn mirrors_are_proofs() {
+        use crate::distance::Inflated;
+        use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Margin, Point, Scaled, Sphere};
+        let at = |x: [f64; 3]| Point::new(Vector::from(x)).unwrap();
+        let cuboid = BoxShape::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
+        let cone = Cone::new(1.0, 2.0).unwrap();
+        let sets: [(&dyn Support<f64, 3>, u8); 12] = [
+            (&cuboid, 7),
+            (&Ellipsoid::new(Vector::from([1.0, 2.0, 3.0])).unwrap(), 7),
+            (&Sphere::new(1.0).unwrap(), 7),
+            (&Cylinder::new(1.0, 2.0).unwrap(), 7),
+            (&Capsule::new(1.0, 2.0).unwrap(), 7),
+            (&cone, 3),
+            (&at([0.0, 1.0, -0.0]), 5),
+            (&Margin::new(&cone, 1.0).unwrap(), 3),
+            (&Scaled::new(&cone, 2.0).unwrap(), 3),
+            (&Sum::new(cuboid, at([0.0, 0.0, 1.0])), 3),
+            (&Difference::new(at([1.0, 0.0, 0.0]), &cone), 2),
+            (&Inflated(&Margin::new(&cone, 1.0).unwrap()), 3),
+        ];
+        let mut dice = Dice(9);
+        for (k, (set, mirrors)) in sets.iter().enumerate() {
+            for signs in 1..8u8 {
+                let mirrored = set.mirrored(signs);
+                assert_eq!(mirrored, signs & !mirrors == 0, "{k} {signs}");
+                let flip = |v: Vector<f64, 3>| Vector::from_fn(|i, _| if signs >> i & 1 == 1 { -v[i] } else { v[i] });
+                for _ in 0..if mirrored { 20 } else { 0 } {
+                    let u = dice.vector();
+                    let (here, there) =
+                        (set.support(&u).unwrap().dot(&u), set.support(&flip(u)).unwrap().dot(&flip(u)));
+                    assert!((here - there).abs() < 1e-14, "{k} {signs}");
+                }
+            }
         }
     }
 }
