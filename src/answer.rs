@@ -31,7 +31,7 @@ pub enum Outcome {
     SupportFailed,
 }
 
-/// How a query was answered: what it is decides (module [`plan`](crate::solver)).
+/// How a query was answered: what it is decides (see [`Solver::solve`](crate::Solver::solve)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plan {
     /// By the distance of the core from the origin: A has a ball term, and the origin is outside of what it is swept over.
@@ -64,7 +64,7 @@ pub struct Answer<T, const N: usize> {
     pub direction: Vector<T, N>,
     /// s_A(u), the point of A that is farthest along it (its ball term included).
     pub support: Vector<T, N>,
-    /// h_Q(u). With `direction` and `support` it makes the gradient of d: see [`Answer::derivative`].
+    /// h_Q(u); 1 where `upper` is minus a distance and Q no ball. With `direction` and `support` it makes the gradient of d: see [`Answer::derivative`].
     pub gauge: T,
     /// Where the minimiser is known not to be unique (to the tolerance): another direction, more than 8 degrees away, that bounds d as
     /// tightly. `None` says that none was met, not that there is none.

@@ -156,23 +156,18 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         // What the search stores are images of A's points in its cones. Until it has a bound, those stored before are what is known.
         let known = self.polytope.lower(query, expanded.key).is_some();
         let floor = if known { floor } else { self.nearest_stored(query, floor) };
-        let Some(cones) = self.polytope.conewise(query, &expanded) else {
+        let Some(found) = self.polytope.conewise(query, &expanded) else {
             return self.conclude(query, expanded, floor);
         };
         query.plan = Plan::Cones;
-        match cones {
-            Ok(found) if found.stop == Stop::Outside || found.lower <= -T::HUGE => {
-                self.polytope.forget();
-                self.conclude(query, Expanded { stop: found.stop, key: -T::HUGE, facet: None }, floor)
-            }
-            Ok(found) => {
-                let answer = self.report(query, found.stop, found.lower, found.witness);
-                Answer { cones: found.cones, splits: found.splits, ..answer }
-            }
-            Err(failure) => {
-                self.polytope.forget();
-                self.lower_by_vertices(query, Stop::Failed(failure.0), floor)
-            }
+        if found.stop != Stop::Outside && found.lower > -T::HUGE {
+            let answer = self.report(query, found.stop, found.lower, found.witness);
+            return Answer { cones: found.cones, splits: found.splits, ..answer };
+        }
+        self.polytope.forget();
+        match found.stop {
+            Stop::Failed(_) => self.lower_by_vertices(query, found.stop, floor),
+            stop => self.conclude(query, Expanded { stop, key: -T::HUGE, facet: None }, floor),
         }
     }
 

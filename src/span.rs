@@ -24,6 +24,8 @@ use nalgebra::SMatrix;
 struct Within<'a, S: ?Sized, T, const N: usize, const K: usize> {
     inner: &'a S,
     basis: &'a SMatrix<T, N, K>,
+    /// What the basis adds to the error: its tilt out of A's true span, times the size.
+    blur: T,
 }
 
 impl<S: ?Sized, T: Real, const N: usize, const K: usize> Within<'_, S, T, N, K> {
@@ -61,8 +63,7 @@ impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn S
         self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
     }
     fn error(&self) -> T {
-        // Direction and point are off by N roundoffs each, the basis is off orthonormal by a few.
-        self.inner.error() + T::count(8 * N) * T::ROUNDOFF * (self.inner.extent() + self.inner.radius())
+        self.inner.error() + self.blur
     }
 }
 
@@ -83,22 +84,13 @@ impl<T: Real, const N: usize, const K: usize> Gauge<T, K> for Within<'_, dyn Gau
         self.basis.tr_mul(&self.inner.vertex(index))
     }
     fn inner_radius(&self) -> T {
-        self.inner.inner_radius() * T::of(0.999)
+        (self.inner.inner_radius() * T::of(0.999) - self.blur).at_least(T::zero())
     }
     fn mirrored(&self, signs: u8) -> bool {
         self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
     }
     fn error(&self) -> T {
-        // h_Q(u) is Lipschitz: Q lies in a ball of the radius h_Q(e_1) + h_Q(-e_1) + ...
-        let mut size = T::zero();
-        for i in 0..N {
-            for sign in [T::one(), -T::one()] {
-                let mut axis = Vector::<T, N>::zeros();
-                axis[i] = sign;
-                size += self.inner.value(&axis).unwrap_or(T::zero());
-            }
-        }
-        self.inner.error() + T::count(4 * N) * T::ROUNDOFF * size
+        self.inner.error() + self.blur
     }
 }
 
@@ -126,29 +118,29 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
-        let Some(Span { axes, dimension, support_calls }) = span(a, q, options) else {
+        let Some(span) = span(a, q, options) else {
             return self.solve_until(a, q, options, interrupt);
         };
-        let answer = match dimension {
-            1 => solve_line(a, q, &axes[0], options).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
-            2 if N > 2 => self.within::<2>(a, q, &axes, options, interrupt),
-            3 if N > 3 => self.within::<3>(a, q, &axes, options, interrupt),
-            4 if N > 4 => self.within::<4>(a, q, &axes, options, interrupt),
-            5 if N > 5 => self.within::<5>(a, q, &axes, options, interrupt),
+        let answer = match span.dimension {
+            1 => solve_line(a, q, &span, options).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
+            2 if N > 2 => self.within::<2>(a, q, &span, options, interrupt),
+            3 if N > 3 => self.within::<3>(a, q, &span, options, interrupt),
+            4 if N > 4 => self.within::<4>(a, q, &span, options, interrupt),
+            5 if N > 5 => self.within::<5>(a, q, &span, options, interrupt),
             _ => self.solve_until(a, q, options, interrupt),
         };
-        Answer { support_calls: answer.support_calls.saturating_add(support_calls), ..answer }
+        Answer { support_calls: answer.support_calls.saturating_add(span.support_calls), ..answer }
     }
 
     fn within<const K: usize>(
         &mut self,
         a: &dyn Support<T, N>,
         q: &dyn Gauge<T, N>,
-        axes: &[Vector<T, N>; N],
+        span: &Span<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
-        let basis = SMatrix::<T, N, K>::from_fn(|i, j| axes[j.min(N - 1)][i]);
+        let basis = SMatrix::<T, N, K>::from_fn(|i, j| span.axes[j.min(N - 1)][i]);
         let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve_until(a, q, options, interrupt) };
         let options = Options {
             absolute: options.absolute,
@@ -157,7 +149,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             max_iterations: options.max_iterations,
             guess: options.guess.map(|guess| basis.tr_mul(&guess)),
         };
-        let (a, q) = (Within { inner: a, basis: &basis }, Within { inner: q, basis: &basis });
+        let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, size(q)));
         widened(&narrow.solve_until(&a, &q, &options, interrupt), &basis)
     }
 }
@@ -195,7 +187,37 @@ struct Span<T, const N: usize> {
     /// The first `dimension` are an orthonormal basis.
     axes: [Vector<T, N>; N],
     dimension: usize,
+    /// Sine of the angle by which the axes may be out of A's true span: a point is off by the margin, an axis by that over the width
+    /// that it was found from.
+    tilt: T,
+    /// Largest |a| seen in A.
+    reach: T,
     support_calls: u32,
+}
+
+impl<T: Real, const N: usize> Span<T, N> {
+    /// A set or a gauge of this size in the subspace.
+    fn seen<'a, S: ?Sized, const K: usize>(
+        &self,
+        inner: &'a S,
+        basis: &'a SMatrix<T, N, K>,
+        size: T,
+    ) -> Within<'a, S, T, N, K> {
+        Within { inner, basis, blur: self.tilt * size }
+    }
+}
+
+/// Q lies in a ball of the radius h_Q(e_1) + h_Q(-e_1) + ...
+fn size<T: Real, const N: usize>(q: &dyn Gauge<T, N>) -> T {
+    let mut size = T::zero();
+    for i in 0..N {
+        for sign in [T::one(), -T::one()] {
+            let mut axis = Vector::<T, N>::zeros();
+            axis[i] = sign;
+            size += q.value(&axis).unwrap_or(T::zero());
+        }
+    }
+    size
 }
 
 /// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it.
@@ -243,18 +265,24 @@ fn span<T: Real, const N: usize>(
             }
         }
     }
-    Some(Span { axes, dimension: start.dimension(), support_calls: query.support_calls() })
+    // The direction and the point of a support call are off by N roundoffs besides.
+    let tilt = T::count(4 * N) * (query.margin() + query.resolution()) / start.least_width();
+    let tilt = tilt + T::count(8 * N) * T::ROUNDOFF;
+    let (reach, support_calls) = (query.true_reach(), query.support_calls());
+    Some(Span { axes, dimension: start.dimension(), tilt, reach, support_calls })
 }
 
 /// On a line, two directions are all there are.
 fn solve_line<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn Gauge<T, N>,
-    axis: &Vector<T, N>,
+    span: &Span<T, N>,
     options: &Options<T, N>,
 ) -> Option<Answer<T, N>> {
-    let axis = unit(axis);
-    let (mut query, checked) = Query::new(a, q, T::zero(), *options);
+    let identity = SMatrix::<T, N, N>::identity();
+    let (a, q) = (span.seen(a, &identity, span.reach), span.seen(q, &identity, size(q)));
+    let axis = unit(span.axes.first()?);
+    let (mut query, checked) = Query::new(&a, &q, T::zero(), *options);
     checked.and_then(|()| query.normalize()).ok()?;
     let mut ends = Simplex::new(query.support(&axis).ok()?.0);
     ends.push(query.support(&-axis).ok()?.0);

@@ -40,6 +40,17 @@ impl<T: Real, const N: usize> Start<T, N> {
         self.base.map_or(T::HUGE, |base| norm(&self.edges.complement(&self.edges.complement(&base))))
     }
 
+    /// The least width by which a point stuck out of those before it.
+    pub fn least_width(&self) -> T {
+        let mut least = T::HUGE;
+        for i in 0..N {
+            if i < self.edges.count {
+                least = least.at_most(norm(&self.edges.q[i]));
+            }
+        }
+        least
+    }
+
     /// An orthonormal basis of the affine hull's directions; the rest is zero.
     pub fn axes(&self) -> [Vector<T, N>; N] {
         let mut axes = [Vector::zeros(); N];

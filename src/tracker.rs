@@ -18,7 +18,7 @@ use crate::plan::shoot::descend;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector};
-use crate::simplex::{Simplex, Vertex};
+use crate::simplex::Simplex;
 use crate::solver::Solver;
 use crate::support::{Failure, Support};
 
@@ -147,6 +147,7 @@ fn at_once<T: Real, const N: usize>(
     }
     Ok(stop.map(|stop| {
         query.plan = Plan::Warm;
-        query.answer(stop, -T::HUGE, Simplex::new(Vertex::empty()))
+        let touched = query.supported();
+        query.answer(stop, -T::HUGE, Simplex::new(touched))
     }))
 }

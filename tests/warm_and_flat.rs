@@ -72,8 +72,6 @@ fn a_small_move_is_answered_at_once() {
     let options = Options { relative: 1e-2, ..Options::default() };
     let mut memory = Memory::new::<f64, 6>(256, 2048);
     let mut tracker = Tracker::new();
-    let ball = BoxShape::new(v::<f64, 6>([0.0; 6])).unwrap();
-    let _ = ball;
     let shifted = |x: f64| Rigid::new(body, SMatrix::identity(), v::<f64, 6>([x, 0.0, 0.0, 0.0, 0.0, 0.0])).unwrap();
     let exact = Options { relative: 2e-3, ..options };
     let first = memory.solver().solve_warm(&mut tracker, &shifted(0.0), &Ball::unit(), -1.0, &exact, None);
@@ -231,4 +229,47 @@ fn rays_refuse_what_is_not_a_point() {
     // A finite number that leaves the range of the arithmetic.
     let a = memory.solver::<f64, 3>().solve(&Plain, &Corners(1e308), &Options::default());
     assert!(a.lower.is_finite() && a.lower <= a.upper, "{:?} {} {}", a.plan, a.lower, a.upper);
+}
+
+/// The axes of a thin set are known as well as its points are, over its width; Q out of its plane makes that count.
+#[test]
+fn a_subspace_found_from_a_thin_set_is_not_taken_for_exact() {
+    let mut dice = Dice::new(73);
+    for width in [1e-2, 1e-4, 1e-6] {
+        for _ in 0..50 {
+            let r = dice.rotation::<3>();
+            let basis = SMatrix::<f64, 3, 2>::from_fn(|i, j| r[i][j]);
+            let set = Embedded { inner: BoxShape::new(v::<f64, 2>([1.0, width])).unwrap(), basis };
+            // Its projection ends where the box does.
+            let end = Vector::<f64, 3>::from_fn(|i, _| r[i][1] * width + r[i][2] * 10.0);
+            let mut memory = Memory::new::<f64, 3>(64, 128);
+            let options = Options { relative: 1e-9, ..Options::default() };
+            let a = memory.solver::<f64, 3>().solve_in_span(&set, &Segment::new(end).unwrap(), &options);
+            assert!(a.lower <= 1.0 && 1.0 <= a.upper, "{width} [{:e}, {:e}] + 1", a.lower - 1.0, a.upper - 1.0);
+        }
+    }
+}
+
+/// The change of d as the set moves along x, by the envelope theorem and by differences.
+#[test]
+fn the_gradient_holds_for_any_gauge_and_for_warm_answers() {
+    let body = Ellipsoid::new(v::<f64, 3>([1.0, 1.5, 2.0])).unwrap();
+    let at = |x: f64| Rigid::new(body, SMatrix::identity(), v::<f64, 3>([x, 0.2, -0.1])).unwrap();
+    let gauge = EllipsoidGauge::new(v::<f64, 3>([0.5, 1.0, 0.7]), SMatrix::identity()).unwrap();
+    let options = Options { relative: 1e-9, ..Options::default() };
+    let mut memory = Memory::new::<f64, 3>(2048, 4096);
+    let along = |_: &Vector<f64, 3>| v::<f64, 3>([1.0, 0.0, 0.0]);
+    for q in [&gauge as &dyn Gauge<f64, 3>, &Ball::unit()] {
+        let h = 1e-3;
+        let mut d = |x: f64| memory.solver::<f64, 3>().solve(&at(x), q, &options).upper;
+        let slope = (d(0.3 + h) - d(0.3 - h)) / (2.0 * h);
+        let answer = memory.solver::<f64, 3>().solve(&at(0.3), q, &options);
+        assert!((answer.derivative(along) - slope).abs() < 1e-3, "{} {slope}", answer.derivative(along));
+        let mut tracker = Tracker::new();
+        tracker.remember(&answer);
+        let loose = Options { relative: 1e-2, ..Options::default() };
+        let warm = memory.solver::<f64, 3>().solve_warm(&mut tracker, &at(0.3), q, 0.0, &loose, None);
+        assert_eq!(warm.plan, Plan::Warm);
+        assert!((warm.derivative(along) - slope).abs() < 1e-2, "{} {slope}", warm.derivative(along));
+    }
 }

@@ -90,11 +90,7 @@ enum End<T> {
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Searches cone by cone after the expansion that is still in memory; `None` when there is too little of it for a start.
-    pub(crate) fn conewise(
-        &mut self,
-        query: &mut Query<'_, T, N>,
-        expanded: &Expanded<T>,
-    ) -> Option<Result<Cones<T, N>, Failure>> {
+    pub(crate) fn conewise(&mut self, query: &mut Query<'_, T, N>, expanded: &Expanded<T>) -> Option<Cones<T, N>> {
         if !self.holds_cones() {
             return None;
         }
@@ -108,7 +104,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             }
             None => self.passes(query, &mut found).and_then(|()| touch(query, &mut found)),
         });
-        Some(searched.map(|()| found))
+        if let Err(Failure(code)) = searched {
+            found.stop = Stop::Failed(code);
+        }
+        Some(found)
     }
 
     /// The polar power iteration from the best direction and the normals of the lowest facets.
@@ -135,7 +134,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Passes at shrinking gaps.
     #[inline(never)]
     fn passes(&mut self, query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
-        let skipped = query.mirrors();
+        let mirrors = query.mirrors();
         let [often, seldom] = NARROWINGS;
         let narrowing = T::of(if query.may_be_cut_short() { often } else { seldom });
         let mut gap = first_gap(query, narrowing);
@@ -143,7 +142,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             let is_last = query.level(gap, T::zero()) >= query.level(T::zero(), T::zero());
             // The last one has room for what rounding takes of the lower bound.
             let level = if is_last { gap * T::of(0.25) } else { gap };
-            let pass = match self.pass(query, level, skipped)? {
+            let pass = match self.pass(query, level, mirrors)? {
                 Ok(pass) => pass,
                 Err(stop) => {
                     found.stop = stop;
@@ -168,7 +167,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         }
     }
 
-    /// Searches all cones, those that hold the best direction first; `skipped` tells which orthants are images of others.
+    /// Searches all cones, those that hold the best direction first; `mirrors` tells which orthants are images of others.
     fn pass(&mut self, query: &mut Query<'_, T, N>, gap: T, mirrors: u64) -> Result<Result<Pass<T, N>, Stop>, Failure> {
         let mut pass = Pass { lower: T::HUGE, witness: None, cones: 0, splits: 0 };
         let first = Cone::<N>::orthant_of(&query.direction);
@@ -234,13 +233,15 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             if query.is_at_zero() {
                 return Ok(End::Stopped(Stop::Rounding));
             }
-            let tolerance = self.resolution();
-            if height - offset <= tolerance {
+            // Heights in the cone, to which the points were brought: those count for the facets.
+            let vertex = within(vertex);
+            let tolerance = self.resolution().at_least(query.resolution());
+            if normal.dot(&vertex.point) - offset <= tolerance {
                 // On the boundary of A: nothing raises this facet.
                 final_key = final_key.at_most(key);
                 continue;
             }
-            match self.insert(index, within(vertex), tolerance) {
+            match self.insert(index, vertex, tolerance) {
                 Some(Insertion::Done) => {
                     self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?
                 }

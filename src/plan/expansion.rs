@@ -206,10 +206,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         };
         let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
         let mut simplex = self.corners(facet);
-        if query.ball.is_none() {
+        let Some(foot) = query.foot() else {
+            simplex.minimize(self.resolution());
             return simplex;
-        }
-        let foot = query.foot();
+        };
         let resolution = self.resolution();
         simplex.translate(&-foot);
         simplex.minimize(resolution);

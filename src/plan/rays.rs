@@ -7,7 +7,7 @@
 //! # The lower bound
 //!
 //! The crossings are those of points near A: with m the support function's error, the rounding and what [`Ray::reach`]
-//! measures, t_v v is in A + mB for every vertex v; let λ = min t_v.
+//! measures (and t_v times the error of v, as Q tells it), t_v v is in A + mB for every vertex v; let λ = min t_v.
 //!
 //! * Q contains a ball of radius ρ around the origin: then λQ is in A + mB, and mB in (m/ρ)Q. What is added to both sides of an
 //!   inclusion of compact convex sets can be taken away again, so d >= λ - m/ρ.
@@ -54,13 +54,21 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
         if gap > T::zero() && !query.may_be_cut_short() {
             continue;
         }
-        let Some((rays, radius)) = shoot_all(query, count, gap, reserve)? else {
-            if let Some(found) = &mut found {
-                found.stop = query.exhausted().unwrap_or(Stop::Rounding);
+        let (rays, radius) = match (shoot_all(query, count, gap, reserve), &mut found) {
+            (Ok(Some(shot)), _) => shot,
+            (Err(failure), None) => return Err(failure),
+            // What an earlier pass has shown still holds.
+            (Err(Failure(code)), Some(earlier)) => {
+                earlier.stop = Stop::Failed(code);
+                return Ok(found);
             }
-            return Ok(found);
+            (Ok(None), None) => return Ok(None),
+            (Ok(None), Some(earlier)) => {
+                earlier.stop = query.exhausted().unwrap_or(Stop::Rounding);
+                return Ok(found);
+            }
         };
-        let margin = query.margin() + rays.error;
+        let margin = query.margin() + rays.error + rays.least * query.gauge_error();
         let loss = match (query.inner_radius(), radius) {
             (inner, _) if inner > T::zero() => margin / inner,
             (_, Some(radius)) if radius > margin => rays.least * (margin / radius),
@@ -69,7 +77,11 @@ pub(crate) fn solve_rays<T: Real, const N: usize>(
         let Some(witness) = rays.witness else { return Ok(found) };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
-        let verdict = query.verdict(&Bracket { lower, upper: query.upper() });
+        if !(lower > T::zero()) {
+            return Ok(found);
+        }
+        let verdict =
+            query.verdict(&Bracket { lower, upper: query.upper() }).filter(|_| query.verify().is_ok_and(|held| held));
         found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness });
         if verdict.is_some() {
             break;

@@ -45,9 +45,12 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         Some(())
     }
 
-    /// Unit normal and offset of a facet of which some vertices may be rays, but not all.
+    /// Unit normal >= 0 and offset of a facet of which some vertices may be rays, but not all.
     pub(super) fn plane_in_orthant(&self, vertices: &[Index; N], normal: &Vector<T, N>) -> Option<(Vector<T, N>, T)> {
         let normal = unit(normal);
+        if !normal.iter().all(|&x| x >= T::zero()) {
+            return None; // What the lower bound rests on (module `conewise`).
+        }
         let mut offset = T::HUGE;
         for &v in vertices {
             if usize::from(v) >= N {

@@ -41,6 +41,12 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         };
         let lower = self.floored(lower);
         let upper = self.upper();
+        // Bounds that contradict each other say that A's support function is none (or its error larger than it says).
+        let (lower, stop) = match stop {
+            Stop::Failed(_) if lower > upper => (-T::HUGE, stop),
+            _ if lower > upper => (-T::HUGE, Stop::Rounding),
+            _ => (lower, stop),
+        };
         let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
         let met = known && self.is_met(&Bracket { lower, upper });
         // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
@@ -60,7 +66,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             upper: self.unscaled(upper, T::one()),
             direction: self.direction,
             support: (self.point + self.direction * self.bounds.radius) / self.scale,
-            gauge: if self.apart { self.gauge(&self.direction).unwrap_or(T::zero()) } else { self.gauge },
+            gauge: self.gauge,
             rival: self.rival(),
             witness,
             plan: self.plan,

@@ -91,6 +91,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     pub plan: Plan,
     /// A lower bound of d that holds anyway; 0: none that says anything.
     floor: T,
+    /// The limit that was reached: from then on nothing is added.
+    stopped: Option<Stop>,
     /// Says when to stop.
     pub interrupt: Option<&'q dyn Fn() -> bool>,
 }
@@ -137,6 +139,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             dimension: N,
             plan: Plan::Expansion,
             floor: T::zero(),
+            stopped: None,
             interrupt: None,
         };
         (query, checked)
@@ -171,6 +174,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         }
         let value = value / self.scale;
         if value.abs() < T::TINY { value + outward * T::TINY } else { value.at_least(-T::HUGE).at_most(T::HUGE) }
+    }
+
+    /// The largest norm of a point seen, in the caller's units.
+    pub fn true_reach(&self) -> T {
+        self.reach / self.scale
     }
 
     /// Calls of A's support function so far.
@@ -313,6 +321,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.q.mapping(direction).filter(|q| finite(q) && q.iter().any(|&x| x != T::zero()))
     }
 
+    /// How far h_Q may be off, as a length.
+    pub fn gauge_error(&self) -> T {
+        self.gauge_error
+    }
+
+    /// The point of A's core that is known along the best direction.
+    pub fn supported(&self) -> Vertex<T, N> {
+        Vertex { point: self.point, witness: self.point }
+    }
+
     /// How many rays decide the query, for a polytopal Q; else 0.
     pub fn rays(&self) -> usize {
         self.q.vertex_count()
@@ -372,9 +390,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.skipped = self.skipped.at_most(key);
     }
 
-    /// Where the plane that proves the upper bound touches the core of A, were A a ball: direction times support value.
-    pub fn foot(&self) -> Vector<T, N> {
-        self.direction * self.height
+    /// Where dQ touches the plane that proves the upper bound (less the ball term): there A's core ends, if the bracket is narrow. `None`
+    /// where Q does not tell.
+    pub fn foot(&self) -> Option<Vector<T, N>> {
+        if self.ball.is_some() {
+            Some(self.direction * self.height)
+        } else {
+            Some(self.mapping(&self.direction)? * self.ratio)
+        }
     }
 
     /// Largest norm of a point of the core seen so far.
@@ -399,11 +422,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Counts an iteration; tells why there must be none when a limit is reached.
     pub fn exhausted(&mut self) -> Option<Stop> {
         let limit = if self.options.max_iterations == 0 { MAX_ITERATIONS } else { self.options.max_iterations };
-        if self.iterations >= limit {
-            return Some(Stop::Iterations);
+        if self.stopped.is_none() && self.iterations >= limit {
+            self.stopped = Some(Stop::Iterations);
         }
-        if self.interrupt.is_some_and(|interrupt| interrupt()) {
-            return Some(Stop::Interrupted);
+        if self.stopped.is_none() && self.interrupt.is_some_and(|interrupt| interrupt()) {
+            self.stopped = Some(Stop::Interrupted);
+        }
+        if self.stopped.is_some() {
+            return self.stopped;
         }
         self.iterations = self.iterations.saturating_add(1);
         None
