@@ -673,8 +673,8 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  * The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
  *
  * qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
- * 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
- * `interrupt`.
+ * 4 * dimension facets it converges in any memory, given the iterations: the less memory, the more (in dimension 6, 64 vertices and 512
+ * facets are a sensible least). max_iterations and `interrupt` bound the work.
  *
  * The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
  * gives the derivative with respect to any parameter p of A or Q from quantities of the result:
@@ -884,7 +884,8 @@ qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
  * For control loops. A tracker remembers the minimisers and the certified lower bound of the last tick. Where the caller knows how
  * far the set has moved since, the old lower bound less that distance is a new one, and the old minimisers give upper bounds
  * for one support call each. If that bracket is as narrow as the options ask for, it is the answer (QDIST_PLAN_WARM); else the solver
- * goes on from there, within max_iterations and `interrupt`, and the result is never worse.
+ * goes on from there, within max_iterations and `interrupt`, and the result is never worse. Let the first tick converge, without a
+ * limit and to a tighter tolerance than the others: ticks are answered at once while what the moves have cost fits between the two.
  *
  *   qdist_tracker_init_f64(&tracker, 6);
  *   moved = -1;

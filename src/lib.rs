@@ -118,6 +118,9 @@ pub mod support;
 pub mod tracker;
 pub mod workspace;
 
+/// The linear algebra in this crate's signatures.
+pub use nalgebra;
+
 pub use answer::{Answer, Outcome, Plan};
 pub use depth::{Body, BodyError, Depth};
 pub use query::Options;

@@ -34,13 +34,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The plan is chosen by what the query is, and told in [`Answer::plan`]:
     /// * a polytopal Q takes one ray per vertex of Q, and no memory of the workspace;
     /// * otherwise a polytope is expanded, best first (Algorithm 1);
-    /// * when it outgrows the memory, d is searched cone by cone in the same memory. That converges with any capacity of at
-    ///   least 4 N facets and 3 N vertices, the sooner the more there is.
+    /// * when it outgrows the memory, d is searched cone by cone in the same memory. That converges, given the iterations, with any
+    ///   capacity of at least 4 N facets and 3 N vertices; with N = 6, 512 facets and 64 vertices are a sensible least.
     ///
     /// With a Euclidean Q, A's ball term is taken out exactly, and a negative answer is minus the distance.
     ///
     /// Cost: one support call an iteration, and with N = 3 about five facets, with N = 6 about fifty. 10 to 40 iterations in space for
-    /// a relative 1e-6; some thousand for a smooth A in six dimensions and a relative 1e-3. The work is bounded by `options.max_iterations` only.
+    /// a relative 1e-6; some thousand for a smooth A in six dimensions and a relative 1e-3. The work is bounded by `options.max_iterations`.
     ///
     /// Never fails: bad input to the support function or the gauge ends with `SupportFailed` and a bracket that is
     /// true for the values that were returned.

@@ -9,7 +9,8 @@
 //! since h_A' / h_Q >= h_A / h_Q - δ / h_Q. And any direction bounds d_Q(A') from above, so the minimisers of the last ticks (several, as equal ones
 //! swap places) give the other end for one support call each. That is a certified bracket at once; if it is not narrow enough,
 //! the polar iteration follows the minimisers to where they have gone, and the solver does the rest from there, as far as the budget
-//! of iterations allows. Its bracket is never worse than the one at once.
+//! of iterations allows. Its bracket is never worse than the one at once. So the first tick should converge, without a limit and to a tighter
+//! tolerance than the others: ticks are answered at once while what the moves have cost fits between the two.
 
 use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;

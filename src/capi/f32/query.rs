@@ -9,8 +9,8 @@
 //! The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
 //!
 //! qdist_solve chooses a plan by what the query is, and tells it in the result. With at least 3 * dimension vertices and
-//! 4 * dimension facets it converges in any memory, the sooner the more there is; the work is bounded by max_iterations and
-//! `interrupt`.
+//! 4 * dimension facets it converges in any memory, given the iterations: the less memory, the more (in dimension 6, 64 vertices and 512
+//! facets are a sensible least). max_iterations and `interrupt` bound the work.
 //!
 //! The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
 //! gives the derivative with respect to any parameter p of A or Q from quantities of the result:

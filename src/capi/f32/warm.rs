@@ -4,7 +4,8 @@
 //! For control loops. A tracker remembers the minimisers and the certified lower bound of the last tick. Where the caller knows how
 //! far the set has moved since, the old lower bound less that distance is a new one, and the old minimisers give upper bounds
 //! for one support call each. If that bracket is as narrow as the options ask for, it is the answer (QDIST_PLAN_WARM); else the solver
-//! goes on from there, within max_iterations and `interrupt`, and the result is never worse.
+//! goes on from there, within max_iterations and `interrupt`, and the result is never worse. Let the first tick converge, without a
+//! limit and to a tighter tolerance than the others: ticks are answered at once while what the moves have cost fits between the two.
 //!
 //!   qdist_tracker_init_f32(&tracker, 6);
 //!   moved = -1;
