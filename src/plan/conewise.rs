@@ -23,7 +23,9 @@
 //! has c_F.x >= e_F.
 //!
 //! 1. The surface is a closed cycle (up to infinity), made from that of one point's orthant by replacing patches with cones over their
-//!    boundaries. So every line in the direction (1, .., 1) crosses it an odd number of times, as it did the first.
+//!    boundaries. A patch has finite vertices only or with rays, never the facet at infinity; so what lies between patch and cone goes
+//!    to infinity in fewer than N of the directions -e_i, and a line in the direction (1, .., 1) crosses the two together an even number of times. So
+//!    every such line crosses the surface an odd number of times, as it did the first.
 //! 2. Let λ h_Q(c_F) < e_F for all F. Then the half line from a point q of λQ in the direction -(1, .., 1) misses all facets: c_F.x <= c_F.q < e_F on
 //!    it, as c_F >= 0.
 //! 3. Were there a c >= 0 with c.v < c.q for all vertices v, the half line in the direction (1, .., 1) would miss them too, and the whole
@@ -31,7 +33,7 @@
 //!
 //! Neither convexity of the surface nor the accuracy of c_F is used, nor that the origin is inside A: it is when λ > 0. As in
 //! [`bounds`](crate::bounds), λQ stands for λQ + mB where heights are known up to m; here m counts three times (|c|_1 <= sqrt(6) |c|), and
-//! once more for each halving (module `cone`).
+//! once more for each halving (module `cone`; that u = G c is rounded in h_Q(u) is less, as λ times the size of Q is at most that of A).
 //!
 //! # What was tried and lost
 //!
@@ -39,6 +41,10 @@
 //! Halving between the generators that divide the unfinished facets most evenly, however near to each other: never ends, as
 //! cones become flat instead of narrow. Expansion that starts from the simplex which the polar iteration pierces at a local
 //! minimum: 0.2 to 3 times the time of ten grasps, about 1 in the median, and slivers that leave the origin on the surface.
+//!
+//! Not tried: Newton's iteration on the active set for the upper bound, which needs derivatives of the support mapping that a set does not
+//! give (the polar iteration ends within the tolerance of a local minimum; its error counts squared); and curvature beyond the ball that rolls inside an
+//! ellipsoid, which is taken out exactly. A wrench set has no such ball: its primitives are cones over discs of three dimensions in six.
 
 use super::cone::Cone;
 use super::expansion::Expanded;
