@@ -99,6 +99,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// of Q on it. [`Answer::dimension`] tells its dimension; directions and points are those of the whole space. A set that spans the
     /// whole space is solved there, one whose affine hull misses the origin as [`solve`](Solver::solve) does.
     ///
+    /// A subspace of coordinate axes is that subspace; any other is known as well as A's points are, over A's width, and the bracket allows for that.
     /// Flat means: no wider than the rounding of A's support function (some 100 roundoffs of its size). Cost: N + 1 to 2 N + 2 more support
     /// calls.
     pub fn solve_in_span(
@@ -252,6 +253,8 @@ fn span<T: Real, const N: usize>(
     // Coordinates that no axis uses are no part of it; if as many are left as the dimension, they span it.
     let used = |i: usize| axes.iter().any(|axis| axis[i].abs() > T::ROUNDOFF * T::count(64));
     let coordinates = (0..N).filter(|&i| used(i)).count();
+    // The direction and the point of a support call are off by N roundoffs.
+    let mut tilt = T::count(8 * N) * T::ROUNDOFF;
     if coordinates == start.dimension() {
         let mut number = 0;
         let used: [bool; N] = core::array::from_fn(used);
@@ -264,10 +267,9 @@ fn span<T: Real, const N: usize>(
                 number += 1;
             }
         }
+    } else {
+        tilt += T::count(4 * N) * (query.margin() + query.resolution()) / start.least_width();
     }
-    // The direction and the point of a support call are off by N roundoffs besides.
-    let tilt = T::count(4 * N) * (query.margin() + query.resolution()) / start.least_width();
-    let tilt = tilt + T::count(8 * N) * T::ROUNDOFF;
     let (reach, support_calls) = (query.true_reach(), query.support_calls());
     Some(Span { axes, dimension: start.dimension(), tilt, reach, support_calls })
 }
