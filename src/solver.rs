@@ -57,19 +57,32 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
+        self.solve_unless(a, q, options, interrupt, |_| Ok(None))
+    }
+
+    /// The same, unless `known` has the answer of the query before any plan begins.
+    pub(crate) fn solve_unless(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+        known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
+    ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_gauge(q);
         let (mut query, checked) = Query::new(set, q, radius, *options);
         query.interrupt = interrupt;
-        if let Err(failure) = checked.and_then(|()| query.normalize()) {
-            return self.give_up(&mut query, failure);
+        match checked.and_then(|()| query.normalize()).and_then(|()| known(&mut query)) {
+            Ok(Some(answer)) => answer,
+            Ok(None) => self.decide(&mut query),
+            Err(failure) => self.give_up(&mut query, failure),
         }
-        self.decide(&mut query)
     }
 
     /// The plan for a query that has been made ready.
-    pub(crate) fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
+    fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         let rays = match solve_rays(query) {
             Ok(rays) => rays,
             Err(failure) => return self.give_up(query, failure),
@@ -281,7 +294,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         stored.into_iter().chain(before).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }
 
-    pub(crate) fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
+    fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
         self.lower_by_vertices(query, Stop::Failed(failure.0), None)
     }
 }

@@ -9,10 +9,12 @@
 //!
 //! for directions c in R^K, so the same solver answers there, in the same memory.
 
-use crate::answer::{Answer, Outcome, Plan};
+use crate::answer::{Answer, Outcome, Stop};
+use crate::bounds::Bracket;
+use crate::plan::expansion::sample;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::scalar::{Real, Vector, unit};
 use crate::simplex::{Corner, Simplex, Vertex};
 use crate::solver::Solver;
 use crate::start::Start;
@@ -232,14 +234,7 @@ fn span<T: Real, const N: usize>(
     let mut start = Start::new(query.first_direction());
     while start.missing() > 0 {
         let direction = start.direction();
-        let mut point = query.support(&direction).ok()?.0.point;
-        // (The first point may be the origin, and the reach 0.)
-        if start.progress(&direction, &point) <= query.reach() * T::of(0.01) {
-            let other = query.support(&-direction).ok()?.0.point;
-            if start.progress(&direction, &other) > start.progress(&direction, &point) {
-                point = other;
-            }
-        }
+        let point = sample(&mut query, &start, &direction, false).ok()??.point;
         let thin = (query.resolution() + query.margin()) * T::count(4);
         if !start.accept(&point, thin) {
             start.flat(&direction);
@@ -296,8 +291,7 @@ fn solve_line<T: Real, const N: usize>(
     let [Some(first), Some(second)] = facets else { return None };
     let lower = query.lower_from_facets([first, second].into_iter(), query.margin())?;
     ends.minimize(query.resolution());
-    let stop = query.verdict(&crate::bounds::Bracket { lower, upper: query.upper() });
-    let answer = query.answer(stop.unwrap_or(crate::answer::Stop::Rounding), lower, ends);
-    (answer.outcome != Outcome::SupportFailed && norm(&axis) > T::zero())
-        .then_some(Answer { plan: Plan::Expansion, ..answer })
+    let stop = query.verdict(&Bracket { lower, upper: query.upper() });
+    let answer = query.answer(stop.unwrap_or(Stop::Rounding), lower, ends);
+    (answer.outcome != Outcome::SupportFailed).then_some(answer)
 }

@@ -14,7 +14,6 @@
 
 use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
-use crate::distance::Inflated;
 use crate::plan::shoot::descend;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
@@ -110,17 +109,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
-        self.polytope.reset();
-        let inflated = Inflated(a);
-        let (set, radius) = inflated.for_gauge(q);
-        let (mut query, checked) = Query::new(set, q, radius, *options);
-        query.interrupt = interrupt;
         let lower = tracker.lower_after(moved, q);
-        let answer = match checked.and_then(|()| query.normalize()).and_then(|()| at_once(&mut query, tracker, lower)) {
-            Ok(Some(answer)) => answer,
-            Ok(None) => self.decide(&mut query),
-            Err(failure) => self.give_up(&mut query, failure),
-        };
+        let answer = self.solve_unless(a, q, options, interrupt, |query| at_once(query, tracker, lower));
         tracker.remember(&answer);
         answer
     }

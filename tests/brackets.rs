@@ -2,6 +2,7 @@
 //! thresholds close to d, tolerances from nothing to everything, odd guesses. In both scalar types, 2 to 6
 //! dimensions.
 
+#[macro_use]
 mod common;
 
 use common::dd::v3;
@@ -106,24 +107,6 @@ fn holds<T: Real, const N: usize>(k: &Known<T, N>, s: &Seen, options: &Options<T
     let blur = k.blur * k.d.abs();
     assert!(s.lower <= k.d + blur && k.d - blur <= s.upper, "the bracket is false: {}", tell());
     assert!(s.failure == 0 && s.outcome != Outcome::SupportFailed, "{}", tell());
-}
-
-macro_rules! every_type_and_dimension {
-    ($test:ident, $generic:ident) => {
-        #[test]
-        fn $test() {
-            $generic::<f64, 2>();
-            $generic::<f64, 3>();
-            $generic::<f64, 4>();
-            $generic::<f64, 5>();
-            $generic::<f64, 6>();
-            $generic::<f32, 2>();
-            $generic::<f32, 3>();
-            $generic::<f32, 4>();
-            $generic::<f32, 5>();
-            $generic::<f32, 6>();
-        }
-    };
 }
 
 /// More iterations: the bracket stays true, and inside it does not get worse by more than rounding. (Outside and

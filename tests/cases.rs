@@ -113,12 +113,8 @@ fn fixtures() -> Vec<PathBuf> {
 
 /// The full sets, if they are there.
 fn full_sets(test: &str) -> Option<Vec<PathBuf>> {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/convex");
-    let Ok(entries) = std::fs::read_dir(&directory) else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs {directory:?}");
-        println!("SKIPPED: {test}: {directory:?} is not there");
-        return None;
-    };
+    let directory = common::shared(test, "convex")?;
+    let entries = std::fs::read_dir(&directory).unwrap();
     let mut files: Vec<PathBuf> = entries
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|e| e == "txt"))

@@ -3,6 +3,7 @@
 //! References are `f64` expressions in the very numbers that the solver is given, so they are off by a few roundings
 //! of `f64`; [`holds`] allows for that and for nothing else.
 
+#[macro_use]
 mod common;
 
 use common::dice::Dice;
@@ -72,24 +73,6 @@ fn check<T: Real, const N: usize>(what: &str, a: &dyn Support<T, N>, q: &dyn Gau
 /// some thousand roundoffs do.
 fn asked<T: Real>() -> Want {
     Want::Relative(T::RELATIVE_TOLERANCE.to_f64().max(8000.0 * T::ROUNDOFF.to_f64()))
-}
-
-macro_rules! every_type_and_dimension {
-    ($test:ident, $generic:ident) => {
-        #[test]
-        fn $test() {
-            $generic::<f64, 2>();
-            $generic::<f64, 3>();
-            $generic::<f64, 4>();
-            $generic::<f64, 5>();
-            $generic::<f64, 6>();
-            $generic::<f32, 2>();
-            $generic::<f32, 3>();
-            $generic::<f32, 4>();
-            $generic::<f32, 5>();
-            $generic::<f32, 6>();
-        }
-    };
 }
 
 /// Sizes between 1/2 and 2, exact in the scalar type.

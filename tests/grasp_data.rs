@@ -7,7 +7,7 @@
 mod common;
 mod grasp_common;
 
-use grasp_common::vector;
+use grasp_common::{recorded, vector};
 use nalgebra::SMatrix;
 use qdist::grasp::{
     ActiveForces, Contact, Friction, HandContact, Jacobian, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
@@ -15,20 +15,6 @@ use qdist::grasp::{
 };
 use qdist::{Real, Vector};
 use serde_json::Value;
-use std::path::Path;
-
-fn data(test: &str) -> Option<Vec<Value>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/grasps/grasps.json");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs {file:?}");
-        println!("SKIPPED: {test}: {file:?} is not there");
-        return None;
-    };
-    let data: Value = serde_json::from_str(&text).unwrap();
-    let grasps = data["instances"].as_array().unwrap().clone();
-    assert!(grasps.len() >= 8);
-    Some(grasps)
-}
 
 fn numbers(v: &Value) -> Vec<f64> {
     v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
@@ -138,7 +124,7 @@ fn gauge(q: &Value, u: &[f64]) -> f64 {
 
 /// h_W(direction) / h_Q(direction) is d, for every reference with a direction.
 fn values<T: Real>(test: &str, tolerance: f64) {
-    let Some(grasps) = data(test) else { return };
+    let Some(grasps) = recorded(test) else { return };
     let (mut smooth, mut others, mut active) = (0, 0, 0);
     let mut widest = 0.0f64;
     for v in &grasps {
@@ -178,7 +164,7 @@ fn values_at_the_reference_directions_in_f32() {
 /// Ranks, emptiness, centers, discs and the dimension of W^a.
 #[test]
 fn active_sets_are_those_of_the_references() {
-    let Some(grasps) = data("active_sets_are_those_of_the_references") else { return };
+    let Some(grasps) = recorded("active_sets_are_those_of_the_references") else { return };
     let (mut sets, mut spans) = (0, 0);
     for v in &grasps {
         let grasp = read::<f64>(v);
@@ -219,7 +205,7 @@ fn active_sets_are_those_of_the_references() {
 /// The lock on a joint takes force closure away, W^a has a direction with h = 0; the free hand has none near it.
 #[test]
 fn a_grasp_that_does_not_hold_has_a_direction_without_resistance() {
-    let Some(grasps) = data("a_grasp_that_does_not_hold_has_a_direction_without_resistance") else { return };
+    let Some(grasps) = recorded("a_grasp_that_does_not_hold_has_a_direction_without_resistance") else { return };
     let mut found = 0;
     for v in &grasps {
         let grasp = read::<f64>(v);

@@ -1,6 +1,7 @@
 //! The plans that a query may take: which one is taken, and that each is true. Closed forms in 2 to 6 dimensions, both
 //! scalar types: rays for polytopal Q, cones in any memory, budgets of any kind, gradients.
 
+#[macro_use]
 mod common;
 
 use common::dice::Dice;
@@ -229,23 +230,6 @@ fn choice<T: Real, const N: usize>() {
     }
 }
 
-macro_rules! every_type_and_dimension {
-    ($test:ident, $generic:ident) => {
-        #[test]
-        fn $test() {
-            $generic::<f64, 2>();
-            $generic::<f64, 3>();
-            $generic::<f64, 4>();
-            $generic::<f64, 5>();
-            $generic::<f64, 6>();
-            $generic::<f32, 2>();
-            $generic::<f32, 3>();
-            $generic::<f32, 4>();
-            $generic::<f32, 5>();
-            $generic::<f32, 6>();
-        }
-    };
-}
 every_type_and_dimension!(the_plan_is_chosen_by_the_query, choice);
 
 // Cones.

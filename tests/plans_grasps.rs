@@ -8,7 +8,7 @@ mod grasp_common;
 
 use common::dice::Dice;
 use common::memory::{Memory, Seen, broken_promise};
-use grasp_common::{value, vector, wide};
+use grasp_common::{recorded, value, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
@@ -16,7 +16,6 @@ use qdist::support::{Failure, Rigid, Support};
 use qdist::{Answer, Options, Outcome, Plan, Real, Vector};
 use serde_json::Value;
 use std::cell::Cell;
-use std::path::Path;
 
 /// A grasp in scalar type T.
 struct Grasp<T: Real> {
@@ -403,17 +402,6 @@ fn the_origin_next_to_the_boundary_in_f32() {
 
 // The shared grasps.
 
-fn data(test: &str) -> Option<Vec<Value>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/grasps/grasps.json");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs {file:?}");
-        println!("SKIPPED: {test}: {file:?} is not there");
-        return None;
-    };
-    let data: Value = serde_json::from_str(&text).unwrap();
-    Some(data["instances"].as_array().unwrap().clone())
-}
-
 fn six(v: &Value) -> [f64; 6] {
     let list: Vec<f64> = v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
     list.try_into().unwrap()
@@ -425,7 +413,7 @@ fn three<T: Real>(v: &Value) -> Vector<T, 3> {
 
 /// Every reference in the whole space: its d in every bracket, whatever the memory and the budget.
 fn references<T: Real>(test: &str, loose: f64) {
-    let Some(grasps) = data(test) else { return };
+    let Some(grasps) = recorded(test) else { return };
     let mut dice = Dice::new(74);
     let (mut runs, mut converged) = (0, 0);
     for v in &grasps {

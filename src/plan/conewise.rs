@@ -183,7 +183,8 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 match self.expand_cone(query, &cone, gap)? {
                     End::Done(key) => {
                         pass.cones = pass.cones.saturating_add(1);
-                        let lower = self.lower_in_cone(query, key, cone.depth());
+                        let margin = query.margin() * T::count(3 + cone.depth());
+                        let lower = self.lower_up_to(query, key, margin).unwrap_or(-T::HUGE);
                         if lower < pass.lower {
                             pass.lower = lower;
                             pass.witness = self.cone_witness(&cone);
@@ -206,6 +207,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     fn expand_cone(&mut self, query: &mut Query<'_, T, N>, cone: &Cone<N>, gap: T) -> Result<End<T>, Failure> {
         // Margins of the lower bound, and one for the upper.
         let margins = 4 + cone.depth();
+        let level = |query: &Query<'_, T, N>| query.level(gap, query.reserve(margins));
         if let Some(stop) = query.exhausted() {
             return Ok(End::Stopped(stop));
         }
@@ -220,9 +222,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         }
         // The lowest key of a facet that is not queued.
         let mut final_key = T::HUGE;
-        self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?;
+        self.rate_cone(query, cone, level(query), &mut final_key)?;
         while let Some((key, index)) = self.pop_lowest() {
-            if key >= query.level(gap, query.reserve(margins)) {
+            if key >= level(query) {
                 return Ok(End::Done(final_key.at_most(key)));
             }
             if let Some(stop) = query.exhausted() {
@@ -248,12 +250,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 continue;
             }
             match self.insert(index, vertex, tolerance) {
-                Some(Insertion::Done) => {
-                    self.rate_cone(query, cone, query.level(gap, query.reserve(margins)), &mut final_key)?
-                }
+                Some(Insertion::Done) => self.rate_cone(query, cone, level(query), &mut final_key)?,
                 Some(Insertion::Rejected) => final_key = final_key.at_most(key),
                 Some(Insertion::Full) => {
-                    let (i, j) = self.halves(cone, query.level(gap, query.reserve(margins)));
+                    let (i, j) = self.halves(cone, level(query));
                     return Ok(End::Full(i, j));
                 }
                 None => return Ok(End::Stopped(Stop::Rounding)),
@@ -284,20 +284,6 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             }
         }
         Ok(())
-    }
-
-    /// The lower bound in a cone whose lowest facet has this key.
-    fn lower_in_cone(&self, query: &Query<'_, T, N>, key: T, splits: usize) -> T {
-        let margin = query.margin() * T::count(3 + splits);
-        let lower = match query.ball {
-            Some(radius) => {
-                let whole = key * radius;
-                let offset = whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF);
-                query.lower_from_offset(offset, margin)
-            }
-            None => query.lower_from_facets(self.facets().map(|f| (f.offset, f.key)), margin),
-        };
-        lower.unwrap_or(-T::HUGE)
     }
 
     /// The points of the lowest facet.

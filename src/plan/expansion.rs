@@ -98,6 +98,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
     /// inside.
     pub(crate) fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
+        self.lower_up_to(query, key, query.margin())
+    }
+
+    /// The same where heights are known up to `margin`.
+    pub(crate) fn lower_up_to(&self, query: &Query<'_, T, N>, key: T, margin: T) -> Option<T> {
         if !self.is_sound() {
             return None;
         }
@@ -105,15 +110,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             Some(radius) => {
                 // Back from the key to the offset, rounded down: four roundings there and back.
                 let whole = key * radius;
-                query.lower_from_offset(
-                    whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF),
-                    query.margin(),
-                )
+                let offset = whole - query.bounds.radius - whole.abs() * (T::count(5) * T::ROUNDOFF);
+                query.lower_from_offset(offset, margin)
             }
-            None => {
-                let facets = self.facets().map(|f| (f.offset, f.key));
-                query.lower_from_facets(facets, query.margin())
-            }
+            None => query.lower_from_facets(self.facets().map(|f| (f.offset, f.key)), margin),
         }
     }
 
@@ -135,20 +135,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         let mut start = Start::new(*first);
         while start.missing() > 0 {
             let direction = start.direction();
-            let (mut vertex, height) = query.support(&direction)?;
-            if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
-                return Ok(Some(Stop::Outside));
-            }
-            // (The first point may be the origin, and the reach 0.)
-            if start.progress(&direction, &vertex.point) <= query.reach() * T::of(0.01) {
-                let (other, height) = query.support(&-direction)?;
-                if query.is_outside(height) && query.bounds.radius == T::zero() && query.verify()? {
-                    return Ok(Some(Stop::Outside));
-                }
-                if start.progress(&direction, &other.point) > start.progress(&direction, &vertex.point) {
-                    vertex = other;
-                }
-            }
+            let Some(vertex) = sample(query, &start, &direction, true)? else { return Ok(Some(Stop::Outside)) };
             let thin = (self.resolution() + query.margin()) * T::count(4);
             if start.accept(&vertex.point, thin) {
                 if self.add_vertex(vertex).is_none() {
@@ -226,4 +213,30 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         simplex.translate(&foot);
         simplex
     }
+}
+
+/// The next point for the first simplex: A's support point along `direction`, or along its opposite where the first adds little and the
+/// second more. With `heed`, `None` as soon as the origin is certainly outside.
+#[inline(always)]
+pub(crate) fn sample<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    start: &Start<T, N>,
+    direction: &Vector<T, N>,
+    heed: bool,
+) -> Result<Option<Vertex<T, N>>, Failure> {
+    let heed = heed && query.bounds.radius == T::zero();
+    let (vertex, height) = query.support(direction)?;
+    if heed && query.is_outside(height) && query.verify()? {
+        return Ok(None);
+    }
+    // (The first point may be the origin, and the reach 0.)
+    let progress = start.progress(direction, &vertex.point);
+    if progress > query.reach() * T::of(0.01) {
+        return Ok(Some(vertex));
+    }
+    let (other, height) = query.support(&-direction)?;
+    if heed && query.is_outside(height) && query.verify()? {
+        return Ok(None);
+    }
+    Ok(Some(if start.progress(direction, &other.point) > progress { other } else { vertex }))
 }

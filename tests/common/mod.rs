@@ -1,7 +1,26 @@
 //! Reads the convex case files: the format is that of `tests/data/README.md`. The oracles are in the modules.
 
 // Each test uses a part.
-#![allow(dead_code)]
+#![allow(dead_code, unused_macros)]
+
+/// A test of a generic function in both scalars and every dimension.
+macro_rules! every_type_and_dimension {
+    ($test:ident, $generic:ident) => {
+        #[test]
+        fn $test() {
+            $generic::<f64, 2>();
+            $generic::<f64, 3>();
+            $generic::<f64, 4>();
+            $generic::<f64, 5>();
+            $generic::<f64, 6>();
+            $generic::<f32, 2>();
+            $generic::<f32, 3>();
+            $generic::<f32, 4>();
+            $generic::<f32, 5>();
+            $generic::<f32, 6>();
+        }
+    };
+}
 
 pub mod dd;
 pub mod dice;
@@ -12,6 +31,18 @@ pub mod memory;
 use nalgebra::{Matrix3, Vector3};
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};
 use qdist::{Body, Real};
+use std::path::{Path, PathBuf};
+
+/// A file or folder of the shared data, if it is there; its absence is a failure in CI and a skipped test elsewhere.
+pub fn shared(test: &str, path: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+    if path.exists() {
+        return Some(path);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs {path:?}");
+    println!("SKIPPED: {test}: {path:?} is not there");
+    None
+}
 
 /// A shape with its numbers as they stand in the file.
 #[derive(Clone, Debug)]

@@ -7,6 +7,17 @@ use qdist::grasp::{Contact, Friction, WrenchFrame};
 use qdist::{Real, Vector};
 
 use crate::common::dice::Dice;
+use crate::common::shared;
+use serde_json::Value;
+
+/// The grasps of the shared data, if they are there.
+pub fn recorded(test: &str) -> Option<Vec<Value>> {
+    let text = std::fs::read_to_string(shared(test, "grasps/grasps.json")?).unwrap();
+    let data: Value = serde_json::from_str(&text).unwrap();
+    let grasps = data["instances"].as_array().unwrap().clone();
+    assert!(grasps.len() >= 8);
+    Some(grasps)
+}
 
 /// A vector of `T` from constants.
 pub fn vector<T: Real, const N: usize>(v: [f64; N]) -> Vector<T, N> {
