@@ -123,7 +123,7 @@ fn primitives_are_sets_of_their_own() {
     for norm in [Norm::L1, Norm::LInf] {
         let with = WrenchSet::new(&[empty, point, empty], norm).support(&u);
         assert_eq!(with, WrenchSet::new(&[point], norm).support(&u));
-        assert_eq!(WrenchSet::new(&[], norm).support(&u), Ok(Vector::zeros()));
+        assert_eq!(WrenchSet::<f64>::new(&[], norm).support(&u), Ok(Vector::zeros()));
         assert_eq!(WrenchSet::new(&[point], norm).support(&-u), Ok(Vector::zeros()));
     }
     // A direction along which the disc is seen edge on, up to the smallest number.

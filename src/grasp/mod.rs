@@ -93,7 +93,7 @@ pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
 pub use primitive::Primitive;
 pub use span::Subspace;
-pub use wrench_set::{Norm, WrenchSet};
+pub use wrench_set::{Contribution, Norm, WrenchSet};
 
 use crate::scalar::Real;
 

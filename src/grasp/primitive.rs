@@ -6,6 +6,7 @@ use super::contact::{Contact, ContactError};
 use super::frame::WrenchFrame;
 use super::svd::dot;
 use super::usable;
+use super::wrench_set::Contribution;
 use crate::scalar::{Real, Vector, norm, unit};
 use crate::support::{Failure, Support};
 
@@ -104,7 +105,7 @@ impl<T: Real> Primitive<T> {
     /// The value and what the point needs. `u` near unit length ([`near_unit`]), or rounding may go below the format's
     /// range.
     #[inline]
-    pub(super) fn farthest(&self, u: &Vector<T, 6>) -> Farthest<T> {
+    fn farthest(&self, u: &Vector<T, 6>) -> Farthest<T> {
         let along: Vector<T, 3> = Vector::from(self.disc.data.0.each_ref().map(|column| dot(column, &u.data.0[0])));
         let length = norm(&along);
         Farthest { value: dot(&self.center.data.0[0], &u.data.0[0]) + length, along, length }
@@ -112,30 +113,11 @@ impl<T: Real> Primitive<T> {
 
     /// The point that [`farthest`](Self::farthest) found.
     #[inline]
-    pub(super) fn point(&self, farthest: &Farthest<T>) -> Vector<T, 6> {
+    fn point(&self, farthest: &Farthest<T>) -> Vector<T, 6> {
         if !(farthest.length > T::zero()) {
             return self.center;
         }
         self.center + self.disc * unit(&farthest.along)
-    }
-
-    /// Is the set `other` with coordinates multiplied by `signs`, number for number? Columns of the disc may be in another
-    /// order and have other signs: |x| <= 1 does not see that. Rounded numbers are compared without tolerance.
-    pub(super) fn is_mirror_of(&self, other: &Self, signs: &Vector<T, 6>) -> bool {
-        let flipped = other.center.component_mul(signs);
-        if self.empty != other.empty || self.center != flipped {
-            return false;
-        }
-        let mut taken = [false; 3];
-        other.disc.column_iter().all(|column| {
-            let column = column.component_mul(signs);
-            let same = |own: &[T; 6]| {
-                let own = own.iter().zip(column.iter());
-                own.clone().all(|(a, b)| *a == *b) || own.clone().all(|(a, b)| *a == -*b)
-            };
-            let mut candidates = self.disc.data.0.iter().zip(taken.iter_mut());
-            candidates.find(|(own, taken)| !**taken && same(own)).map(|(_, taken)| *taken = true).is_some()
-        })
     }
 
     /// |center| + |disc|: every rounding is relative to it.
@@ -144,8 +126,8 @@ impl<T: Real> Primitive<T> {
     }
 }
 
-pub(super) struct Farthest<T> {
-    pub value: T,
+struct Farthest<T> {
+    value: T,
     along: Vector<T, 3>,
     length: T,
 }
@@ -173,6 +155,34 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
     fn error(&self) -> T {
         // TINY: products that leave the range of the format.
         self.rounding + T::count(24) * T::ROUNDOFF * self.size() + T::TINY
+    }
+}
+
+impl<T: Real> Contribution<T> for Primitive<T> {
+    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+        if self.empty {
+            return Ok(None);
+        }
+        let farthest = self.farthest(u);
+        Ok((farthest.value > floor).then(|| (farthest.value, self.point(&farthest))))
+    }
+    /// Number for number; columns of the disc may be in another order and have other signs: |x| <= 1 does not see that. Rounded numbers
+    /// are compared without tolerance.
+    fn is_mirror_of(&self, other: &Self, signs: &Vector<T, 6>) -> bool {
+        let flipped = other.center.component_mul(signs);
+        if self.empty != other.empty || self.center != flipped {
+            return false;
+        }
+        let mut taken = [false; 3];
+        other.disc.column_iter().all(|column| {
+            let column = column.component_mul(signs);
+            let same = |own: &[T; 6]| {
+                let own = own.iter().zip(column.iter());
+                own.clone().all(|(a, b)| *a == *b) || own.clone().all(|(a, b)| *a == -*b)
+            };
+            let mut candidates = self.disc.data.0.iter().zip(taken.iter_mut());
+            candidates.find(|(own, taken)| !**taken && same(own)).map(|(_, taken)| *taken = true).is_some()
+        })
     }
 }
 

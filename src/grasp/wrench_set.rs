@@ -4,6 +4,27 @@ use super::primitive::{Primitive, near_unit};
 use crate::scalar::{Real, Vector, norm};
 use crate::support::{Failure, Support};
 
+/// What one contact, or one finger, contributes to a wrench set: W_i, a compact convex set of wrenches (paper, eq. 6), by its support function.
+///
+/// [`Primitive`] is the one of a single contact with a friction cone. Implement it for a model of your own: the [`Support`] is enough.
+/// Its [`radius`](Support::radius) must be 0.
+pub trait Contribution<T: Real>: Support<T, 6> {
+    /// h_i(u) and the point, if h_i(u) > `floor`; `u` is near unit length. The value is within [`error`](Support::error) |u| of the true one.
+    ///
+    /// # Errors
+    /// Those of the support function.
+    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+        let point = self.support(u)?;
+        let value = point.dot(u);
+        Ok((value > floor).then_some((value, point)))
+    }
+
+    /// Is it provably the set `other` with coordinates multiplied by `signs`, each 1 or -1? False means that it is not known.
+    fn is_mirror_of(&self, _other: &Self, _signs: &Vector<T, 6>) -> bool {
+        false
+    }
+}
+
 /// The size of all contact forces together (paper, eq. 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Norm {
@@ -13,19 +34,20 @@ pub enum Norm {
     LInf,
 }
 
-/// The grasp wrench set W (paper, eq. 3, with all forces up to unit size: {0} is in it), for any number of primitives.
+/// The grasp wrench set W (paper, eq. 3, with all forces up to unit size: {0} is in it), for any number of contributions,
+/// usually the [`Primitive`]s of contacts.
 ///
 /// ```text
 /// L1:   hull of {0} and all W_i            h = max(0, h_1, ..., h_m)
 /// LInf: sum of the hulls of {0} and W_i    h = max(0, h_1) + ... + max(0, h_m)
 /// ```
 ///
-/// One pass over the m primitives per support call, about 50 operations each, one square root included. Empty
+/// One pass over the m contributions per support call, for primitives about 50 operations each, one square root included. Empty
 /// primitives add nothing. The witness is the point itself.
 ///
-/// `error`, with e_i the error of primitive i, at least 24 u times its size: a computed value h_i is within e_i of the
-/// true one. L1 picks a primitive by two such values, `3 max e_i` with the point's own. LInf decides by signs, which
-/// may cost e_i where it is wrong, and adds m points, one roundoff of the sum for each: `(2 + m/24) sum e_i`.
+/// `error`, with e_i the error of contribution i: a computed value h_i is within e_i of the true one. L1 picks one by two such
+/// values, `3 max e_i` with the point's own. LInf decides by signs, which may cost e_i where it is wrong, and adds m
+/// points, one roundoff u of the sum for each: `2 sum e_i + m u sum |W_i|`.
 ///
 /// ```
 /// use qdist::Vector;
@@ -43,39 +65,42 @@ pub enum Norm {
 /// # Ok::<(), ContactError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct WrenchSet<'a, T> {
-    primitives: &'a [Primitive<T>],
+pub struct WrenchSet<'a, T, C = Primitive<T>> {
+    contributions: &'a [C],
     norm: Norm,
     extent: T,
     error: T,
 }
 
-impl<'a, T: Real> WrenchSet<'a, T> {
-    /// The wrench set of `primitives`, which stay the caller's. Reads all of them, and for LInf calls the support
+impl<'a, T: Real, C: Contribution<T>> WrenchSet<'a, T, C> {
+    /// The wrench set of `contributions`, which stay the caller's. Reads all of them, and for LInf calls the support
     /// function 12 times to bound the extent.
-    pub fn new(primitives: &'a [Primitive<T>], norm: Norm) -> Self {
+    pub fn new(contributions: &'a [C], norm: Norm) -> Self {
         let zero = T::zero();
-        let largest = |f: fn(&Primitive<T>) -> T| primitives.iter().fold(zero, |m, p| m.at_least(f(p)));
-        let total = |f: fn(&Primitive<T>) -> T| primitives.iter().fold(zero, |s, p| s + f(p));
+        let largest = |f: fn(&C) -> T| contributions.iter().fold(zero, |m, c| m.at_least(f(c)));
+        let total = |f: fn(&C) -> T| contributions.iter().fold(zero, |s, c| s + f(c));
         let (extent, error) = match norm {
             Norm::L1 => (largest(Support::extent), T::count(3) * largest(Support::error)),
             Norm::LInf => {
-                let m = T::count(primitives.len());
+                let m = T::count(contributions.len());
                 // m additions of the bounds themselves.
                 let above = T::one() + (m + T::count(8)) * T::ROUNDOFF;
-                (total(Support::extent) * above, (T::count(2) + m / T::count(24)) * total(Support::error) * above)
+                let size = total(Support::extent);
+                (size * above, (T::count(2) * total(Support::error) + m * T::ROUNDOFF * size) * above)
             }
         };
-        let mut set = Self { primitives, norm, extent, error };
-        if norm == Norm::LInf {
-            set.extent = set.extent.at_most(set.half_diagonal());
+        let mut set = Self { contributions, norm, extent, error };
+        if norm == Norm::LInf
+            && let Ok(half_diagonal) = set.half_diagonal()
+        {
+            set.extent = set.extent.at_most(half_diagonal);
         }
         set
     }
 
-    /// The primitives.
-    pub fn primitives(&self) -> &'a [Primitive<T>] {
-        self.primitives
+    /// What its contacts or fingers contribute.
+    pub fn contributions(&self) -> &'a [C] {
+        self.contributions
     }
 
     /// How contact forces are measured.
@@ -83,69 +108,77 @@ impl<'a, T: Real> WrenchSet<'a, T> {
         self.norm
     }
 
-    /// h(u) >= 0, for u not far from unit length, to within [`error`](Support::error) |u|.
-    pub fn value(&self, u: &Vector<T, 6>) -> T {
-        let values = self.primitives.iter().map(|p| T::zero().at_least(p.farthest(u).value));
-        match self.norm {
-            Norm::L1 => values.fold(T::zero(), T::at_least),
-            Norm::LInf => values.fold(T::zero(), |s, x| s + x),
+    /// The point s(u) of the set by its parts: `each(i, w_i)` is called for every contribution i that has a share w_i in it, and s(u) is the
+    /// sum of these. For LInf these are all with h_i(u) > 0, for L1 the one with the largest h_i(u), if that is above 0. `u` is not zero.
+    ///
+    /// # Errors
+    /// Those of the contributions.
+    pub fn shares(&self, u: &Vector<T, 6>, mut each: impl FnMut(usize, &Vector<T, 6>)) -> Result<(), Failure> {
+        let u = near_unit(u);
+        let mut best = (T::zero(), None);
+        for (index, contribution) in self.contributions.iter().enumerate() {
+            match (contribution.reach(&u, best.0)?, self.norm) {
+                (None, _) => {}
+                (Some((_, point)), Norm::LInf) => each(index, &point),
+                (Some((value, point)), Norm::L1) => best = (value, Some((index, point))),
+            }
         }
+        if let (_, Some((index, point))) = best {
+            each(index, &point);
+        }
+        Ok(())
     }
 
     /// Is the set provably the same after its coordinates are multiplied by `signs`, each 1 or -1?
     ///
-    /// True when every primitive, mirrored, is in the list: the same center and, up to order and sign, the same columns
-    /// of the disc, by exact comparison of floating-point numbers; for LInf as often as the primitive itself. False
-    /// means that it is not known. m^2 comparisons of up to 24 numbers.
+    /// True when every contribution, mirrored, is in the list ([`Contribution::is_mirror_of`]): for primitives the same center and,
+    /// up to order and sign, the same columns of the disc, by exact comparison of floating-point numbers; for LInf as often
+    /// as the contribution itself. False means that it is not known. m^2 comparisons, of up to 24 numbers for primitives.
     pub fn is_mirrored(&self, signs: &Vector<T, 6>) -> bool {
         if !signs.iter().all(|s| s.abs() == T::one()) {
             return false;
         }
         let same = Vector::repeat(T::one());
-        let count = |of: &Primitive<T>, signs| self.primitives.iter().filter(|p| p.is_mirror_of(of, signs)).count();
-        self.primitives.iter().all(|p| match self.norm {
-            Norm::L1 => self.primitives.iter().any(|q| q.is_mirror_of(p, signs)),
-            Norm::LInf => count(p, signs) == count(p, &same),
+        let count = |of: &C, signs| self.contributions.iter().filter(|c| c.is_mirror_of(of, signs)).count();
+        self.contributions.iter().all(|c| match self.norm {
+            Norm::L1 => self.contributions.iter().any(|q| q.is_mirror_of(c, signs)),
+            Norm::LInf => count(c, &same) > 0 && count(c, signs) == count(c, &same),
         })
     }
 
     /// Half the diagonal of the box that contains the set: opposed contacts cancel in it, not in the sum of extents.
-    fn half_diagonal(&self) -> T {
+    fn half_diagonal(&self) -> Result<T, Failure> {
         let mut corner = Vector::<T, 6>::zeros();
         for i in 0..6 {
             for sign in [T::one(), -T::one()] {
                 let mut axis = Vector::<T, 6>::zeros();
                 axis[i] = sign;
-                corner[i] = corner[i].at_least(self.value(&axis) + self.error);
+                corner[i] = corner[i].at_least(self.support(&axis)?.dot(&axis) + self.error);
             }
         }
-        norm(&corner) * (T::one() + T::count(16) * T::ROUNDOFF)
+        Ok(norm(&corner) * (T::one() + T::count(16) * T::ROUNDOFF))
     }
 }
 
-impl<T: Real> Support<T, 6> for WrenchSet<'_, T> {
+impl<T: Real> WrenchSet<'_, T> {
+    /// h(u) >= 0, for u not far from unit length, to within [`error`](Support::error) |u|.
+    pub fn value(&self, u: &Vector<T, 6>) -> T {
+        let values = self.contributions.iter().map(|p| T::zero().at_least(p.value(u)));
+        match self.norm {
+            Norm::L1 => values.fold(T::zero(), T::at_least),
+            Norm::LInf => values.fold(T::zero(), |s, x| s + x),
+        }
+    }
+}
+
+impl<T: Real, C: Contribution<T>> Support<T, 6> for WrenchSet<'_, T, C> {
+    fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
+        let mut sum = Vector::zeros();
+        self.shares(u, |_, share| sum += share)?;
+        Ok(sum)
+    }
     fn mirrored(&self, signs: u8) -> bool {
         self.is_mirrored(&Vector::from_fn(|i, _| if signs >> i & 1 == 1 { -T::one() } else { T::one() }))
-    }
-    fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
-        let u = near_unit(u);
-        let zero = T::zero();
-        Ok(match self.norm {
-            Norm::L1 => {
-                let mut best = (zero, None);
-                for p in self.primitives {
-                    let farthest = p.farthest(&u);
-                    if farthest.value > best.0 {
-                        best = (farthest.value, Some((p, farthest)));
-                    }
-                }
-                best.1.map_or(Vector::zeros(), |(p, farthest)| p.point(&farthest))
-            }
-            Norm::LInf => self.primitives.iter().fold(Vector::zeros(), |sum, p| {
-                let farthest = p.farthest(&u);
-                if farthest.value > zero { sum + p.point(&farthest) } else { sum }
-            }),
-        })
     }
     fn extent(&self) -> T {
         self.extent
