@@ -1,5 +1,6 @@
 //! What a query returns: an outcome, a bracket, and the evidence for both ends.
 
+use crate::qset::Gauge;
 use crate::scalar::{Real, Vector};
 use crate::simplex::Simplex;
 
@@ -93,6 +94,19 @@ pub struct Answer<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Answer<T, N> {
+    /// Is d >= `threshold`? `None` when the bracket does not tell.
+    pub fn is_at_least(&self, threshold: T) -> Option<bool> {
+        if self.lower >= threshold { Some(true) } else { (self.upper < threshold).then_some(false) }
+    }
+
+    /// The point of dQ that touches A's boundary, d s_Q(u) with the upper bound for d: of all that Q asks for, what A reaches last. For the
+    /// wrench set of a grasp it is the wrench that is hardest to exert, and its negative the external wrench that is hardest to resist. `None`
+    /// where Q does not tell its [`mapping`](Gauge::mapping). After [`solve_in_span`](crate::Solver::solve_in_span) its projection on A's span
+    /// counts.
+    pub fn weakest(&self, q: &dyn Gauge<T, N>) -> Option<Vector<T, N>> {
+        q.mapping(&self.direction).map(|point| point * self.upper)
+    }
+
     /// The derivative of d with respect to a parameter of A, by the envelope theorem.
     ///
     /// d = min over u of max over a in A of u.a / h_Q(u). Where minimiser and maximiser change continuously, the first-order

@@ -58,7 +58,7 @@
 //! ```text
 //! capi                          C ABI: include/qdist.h
 //!  grasp                        contacts, friction, hands: wrench sets (feature)
-//!  depth  tracker  span  prepare   two bodies in space; warm start; flat sets; vertex graphs of large hulls
+//!  depth  tracker  span  batch  prepare   two bodies in space; warm start; flat sets; many sets; vertex graphs of large hulls
 //!   meridian                    two bodies on one axis
 //!    solver                     which plan, and the answer
 //!     plan                      rays, expansion (Algorithm 1), conewise expansion
@@ -93,6 +93,7 @@
 #![warn(missing_docs)]
 
 pub mod answer;
+pub mod batch;
 pub mod bounds;
 #[cfg(feature = "capi")]
 pub mod capi;
@@ -122,6 +123,7 @@ pub mod workspace;
 pub use nalgebra;
 
 pub use answer::{Answer, Outcome, Plan};
+pub use batch::Best;
 pub use depth::{Body, BodyError, Depth};
 pub use query::Options;
 pub use scalar::{Real, Vector};

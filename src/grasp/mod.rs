@@ -78,6 +78,7 @@
 //! Manipulation*, 1994 (contact maps, friction models). J. Demmel and K. Veselic, *Jacobi's method is more accurate
 //! than QR*, 1992 (the SVD).
 
+mod closure;
 mod contact;
 mod frame;
 mod hand;
@@ -87,6 +88,7 @@ mod span;
 mod svd;
 mod wrench_set;
 
+pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use frame::WrenchFrame;
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};

@@ -1,0 +1,300 @@
+//! Yes-no questions and batches: force closure against an independent convex solver, the best of many grasps against asking for each.
+#![cfg(feature = "grasp")]
+
+mod common;
+mod grasp_common;
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use common::dice::Dice;
+use grasp_common::{contact_map, radii, recorded, value, vector, wide};
+use nalgebra::SMatrix;
+use qdist::grasp::{Closure, Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::support::{Failure, Support};
+use qdist::{Options, Real, Vector, Workspace};
+
+type Memory<T> = Workspace<T, 6, 128, 1024>;
+
+fn frame<T: Real>() -> WrenchFrame<T> {
+    WrenchFrame::new(Vector::zeros(), T::one()).unwrap()
+}
+
+fn primitives<T: Real>(contacts: &[Contact<T>]) -> Vec<Primitive<T>> {
+    let mut memory = vec![Primitive::empty(); contacts.len()];
+    wrenches(contacts, &frame(), &mut memory).unwrap().to_vec()
+}
+
+fn closure<T: Real>(contacts: &[Contact<T>], norm: Norm) -> Closure<T> {
+    let primitives = primitives(contacts);
+    Memory::<T>::new().solver().force_closure(&WrenchSet::new(&primitives, norm), &Options::default())
+}
+
+/// Contacts around the unit ball, normals up to 45 degrees off.
+fn contacts<T: Real>(dice: &mut Dice, count: usize) -> Vec<Contact<T>> {
+    let kind = dice.below(4);
+    (0..count)
+        .map(|_| {
+            let p = Vector::from(dice.direction::<3>());
+            let n = (-p + Vector::from(dice.direction::<3>()) * 0.7).normalize();
+            let (mu, mus) = (T::of(0.2 + 0.8 * dice.unit()), T::of(0.1 + 0.4 * dice.unit()));
+            let friction = match if kind == 3 { dice.below(3) } else { kind } {
+                0 => Friction::Frictionless,
+                1 => Friction::Hard { mu },
+                _ => Friction::Soft { mu, mus },
+            };
+            Contact::new(vector(p.into()), vector(n.into()), friction).unwrap()
+        })
+        .collect()
+}
+
+/// The largest t such that contact forces of sum 1 are in equilibrium and every one is t inside its cone; above 0 for a force-closed
+/// grasp whose contact maps span R^6 (Murray, Li, Sastry, Proposition 5.4), the second value. `None` when Clarabel gives up.
+fn equilibrium<T: Real>(contacts: &[Contact<T>]) -> Option<(f64, bool)> {
+    let m = contacts.len();
+    let columns = 4 * m + 1;
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let mut right = Vec::new();
+    let maps: Vec<_> = contacts.iter().map(|c| contact_map(c, &frame())).collect();
+    let friction: Vec<_> = contacts.iter().map(|c| radii(c, &frame())).collect();
+    // Zero: G f = 0, sum f1 = 1, and components without friction.
+    for i in 0..6 {
+        let mut row = vec![0.0; columns];
+        maps.iter().enumerate().for_each(|(c, map)| (0..4).for_each(|k| row[4 * c + k] = map[k][i]));
+        rows.push(row);
+        right.push(0.0);
+    }
+    let mut row = vec![0.0; columns];
+    (0..m).for_each(|c| row[4 * c] = 1.0);
+    rows.push(row);
+    right.push(1.0);
+    for c in 0..m {
+        for k in (0..3).filter(|&k| friction[c][k] == 0.0) {
+            let mut row = vec![0.0; columns];
+            row[4 * c + k + 1] = 1.0;
+            rows.push(row);
+            right.push(0.0);
+        }
+    }
+    let mut cones = vec![SupportedConeT::ZeroConeT(rows.len())];
+    // |f2 / mu, f3 / mu, f4 / mus| <= f1 - t.
+    for c in 0..m {
+        let mut row = vec![0.0; columns];
+        (row[4 * c], row[4 * m]) = (-1.0, 1.0);
+        rows.push(row);
+        let used: Vec<usize> = (0..3).filter(|&k| friction[c][k] > 0.0).collect();
+        for &k in &used {
+            let mut row = vec![0.0; columns];
+            row[4 * c + k + 1] = -1.0 / friction[c][k];
+            rows.push(row);
+        }
+        right.extend(vec![0.0; 1 + used.len()]);
+        cones.push(match used.len() {
+            0 => SupportedConeT::NonnegativeConeT(1),
+            n => SupportedConeT::SecondOrderConeT(1 + n),
+        });
+    }
+    let mut cost = vec![0.0; columns];
+    cost[4 * m] = -1.0;
+    let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
+    let a = CscMatrix::from(&rows);
+    let mut solver =
+        DefaultSolver::new(&CscMatrix::zeros((columns, columns)), &cost, &a, &right, &cones, settings).unwrap();
+    solver.solve();
+    let t = match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => -solver.solution.obj_val,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => -1.0,
+        _ => return None,
+    };
+    let mut gram = SMatrix::<f64, 6, 6>::zeros();
+    for c in 0..m {
+        for k in (0..4).filter(|&k| k == 0 || friction[c][k - 1] > 0.0) {
+            gram += maps[c][k] * maps[c][k].transpose();
+        }
+    }
+    let full = gram.symmetric_eigenvalues().min() > 1e-12;
+    Some((t, full))
+}
+
+/// Every verdict is right, and comes with its proof.
+fn verdicts<T: Real>(rounding: f64) {
+    let (mut dice, mut closed, mut open) = (Dice::new(41), 0, 0);
+    for case in 0..300 {
+        let count = 1 + dice.below(8);
+        let contacts = contacts::<T>(&mut dice, count);
+        let Some((t, full)) = equilibrium(&contacts) else { continue };
+        let norm = if case % 2 == 0 { Norm::L1 } else { Norm::LInf };
+        let height = |u: &Vector<f64, 6>| contacts.iter().map(|c| value(c, &frame(), u).max(0.0)).sum::<f64>();
+        match closure(&contacts, norm) {
+            Closure::Closed { radius } => {
+                assert!(radius > T::zero() && full && t > 0.0, "{case}: said to be closed, t = {t:e}");
+                for _ in 0..100 {
+                    let u = Vector::<f64, 6>::from(dice.direction::<6>());
+                    assert!(height(&u) >= radius.to_f64() * (1.0 - rounding), "{case}");
+                }
+                closed += 1;
+            }
+            Closure::Open { direction } => {
+                assert!(t < rounding || !full, "{case}: said to be open, t = {t:e}");
+                let u = wide(&direction);
+                assert!(height(&u) <= rounding, "{case}: {:e} along what separates", height(&u));
+                open += 1;
+            }
+            Closure::Undecided { .. } => assert!(t.abs() < rounding, "{case}: undecided, t = {t:e}"),
+        }
+    }
+    assert!(closed > 80 && open > 80, "{closed} closed, {open} open");
+}
+
+#[test]
+fn force_closure_is_decided_right_f64() {
+    verdicts::<f64>(1e-7);
+}
+
+#[test]
+fn force_closure_is_decided_right_f32() {
+    verdicts::<f32>(1e-3);
+}
+
+/// Two fingertips on a line, a cube without friction, no contacts, contacts that all push to one side, a hair from closure.
+#[test]
+fn force_closure_at_its_limits() {
+    let touch = |p: [f64; 3], n: [f64; 3], friction| Contact::new(Vector::from(p), Vector::from(n), friction).unwrap();
+    let pair = |friction| [1.0, -1.0].map(|x| touch([x, 0.0, 0.0], [-x, 0.0, 0.0], friction));
+    for norm in [Norm::L1, Norm::LInf] {
+        assert!(closure(&pair(Friction::Soft { mu: 0.5, mus: 1e-6 }), norm).is_closed());
+        let separated = |contacts: &[Contact<f64>]| match closure(contacts, norm) {
+            Closure::Open { direction } => Some(direction),
+            _ => None,
+        };
+        let spin = separated(&pair(Friction::Hard { mu: 0.5 })).unwrap();
+        assert!(spin[3].abs() > 1.0 - 1e-9, "{spin}");
+        assert!(separated(&pair(Friction::Frictionless)).is_some());
+        assert!(separated(&[]).is_some());
+        let soft = Friction::Soft { mu: 0.5, mus: 0.5 };
+        assert!(separated(&[touch([0.0; 3], [0.0, 0.0, 1.0], soft)]).is_some());
+        let hands = [-1.0, 0.0, 1.0].map(|x| touch([x, 0.0, 0.0], [0.0, 0.0, 1.0], soft));
+        assert!(separated(&hands).unwrap()[2] < 0.0);
+        // Contacts on one line through the object whose cones just do not see each other: atan(0.5) is 26.6 degrees.
+        for (angle, is_closed) in [(0.4636f64, true), (0.4637, false)] {
+            let tilted = |x: f64| touch([x, 0.0, 0.0], [-x * angle.cos(), angle.sin(), 0.0], soft);
+            assert_eq!(closure(&[tilted(1.0), tilted(-1.0)], norm).is_closed(), is_closed, "{angle}");
+        }
+    }
+}
+
+#[test]
+fn recorded_grasps_are_closed_or_not_as_their_references_say() {
+    let Some(grasps) = recorded("recorded_grasps_are_closed_or_not_as_their_references_say") else { return };
+    let mut told = 0;
+    for grasp in &grasps {
+        let point = |c: &serde_json::Value, key: &str| Vector::from_fn(|i, _| c[key][i].as_f64().unwrap());
+        let contacts: Vec<Contact<f64>> = grasp["contacts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| {
+                let number = |key: &str| c[key].as_f64().unwrap_or(0.0);
+                let friction = match c["type"].as_str().unwrap() {
+                    "soft" => Friction::Soft { mu: number("mu"), mus: number("mus") },
+                    "hard" => Friction::Hard { mu: number("mu") },
+                    _ => Friction::Frictionless,
+                };
+                Contact::new(point(c, "p"), point(c, "n"), friction).unwrap()
+            })
+            .collect();
+        for r in grasp["refs"].as_array().unwrap().iter().filter(|r| r["set"] == "W" && r["force_closure"].is_boolean())
+        {
+            let norm = if r["norm"] == "L1" { Norm::L1 } else { Norm::LInf };
+            assert_eq!(closure(&contacts, norm).is_closed(), r["force_closure"].as_bool().unwrap(), "{}", grasp["id"]);
+            told += 1;
+        }
+    }
+    assert!(told > 10);
+}
+
+/// A set whose support function gives up.
+struct Broken;
+
+impl Support<f64, 6> for Broken {
+    fn support(&self, _: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+        Err(Failure(7))
+    }
+}
+
+#[test]
+fn a_failing_support_function_leaves_closure_undecided() {
+    let closure = Memory::new().solver().force_closure(&Broken, &Options::default());
+    assert!(matches!(closure, Closure::Undecided { .. }));
+}
+
+#[test]
+fn the_best_of_a_batch_is_the_best_of_its_answers() {
+    let mut dice = Dice::new(43);
+    let grasps: Vec<Vec<Primitive<f64>>> = (0..60).map(|_| primitives(&contacts::<f64>(&mut dice, 4))).collect();
+    let mut memory = Workspace::<f64, 6, 128, 2048>::new();
+    let options = Options { relative: 1e-3, absolute: 1e-6, ..Options::default() };
+    let q = Ball::unit();
+    for norm in [Norm::L1, Norm::LInf] {
+        let sets = || grasps.iter().map(|g| WrenchSet::new(g, norm));
+        let mut answers = Vec::new();
+        memory.solver().solve_each(sets(), &q, &options, |index, answer| {
+            assert_eq!(index, answers.len());
+            answers.push(answer);
+            true
+        });
+        assert_eq!(answers.len(), grasps.len());
+        let best = memory.solver().best_of(sets(), &q, &options).unwrap();
+        let deepest = answers.iter().map(|a| a.lower).fold(0.0, f64::max);
+        assert!(best.ceiling >= best.answer.upper && best.ceiling >= deepest);
+        assert!(best.answer.lower >= deepest * (1.0 - 2e-3), "{} against {deepest}", best.answer.lower);
+        let own = &answers[best.index];
+        assert!(own.lower <= best.answer.upper && best.answer.lower <= own.upper);
+    }
+    let none: [WrenchSet<'_, f64>; 0] = [];
+    assert!(memory.solver().best_of(none, &q, &options).is_none());
+    let mut asked = 0;
+    memory.solver().solve_each(grasps.iter().map(|g| WrenchSet::new(g, Norm::L1)), &q, &options, |_, _| {
+        asked += 1;
+        asked < 3
+    });
+    assert_eq!(asked, 3);
+}
+
+/// The weakest wrench is in Q times the upper bound, and W's support function proves that no more is possible along its normal.
+#[test]
+fn the_weakest_wrench_touches_the_boundary() {
+    let mut dice = Dice::new(44);
+    let axes = Vector::from([1.0, 2.0, 0.5, 1.0, 0.2, 3.0]);
+    let gauges: [Box<dyn Gauge<f64, 6>>; 5] = [
+        Box::new(Ball::unit()),
+        Box::new(EllipsoidGauge::new(axes, SMatrix::identity()).unwrap()),
+        Box::new(BoxGauge::new(axes).unwrap()),
+        Box::new(CrossPolytope::new(axes).unwrap()),
+        Box::new(Segment::new(axes).unwrap()),
+    ];
+    let mut memory = Workspace::<f64, 6, 128, 2048>::new();
+    let mut asked = 0;
+    while asked < 20 {
+        let primitives = primitives(&contacts::<f64>(&mut dice, 5));
+        let set = WrenchSet::new(&primitives, Norm::LInf);
+        for q in &gauges {
+            let answer = memory.solver().solve(&set, q.as_ref(), &Options { relative: 1e-3, ..Options::default() });
+            if !(answer.lower > 0.0) {
+                continue;
+            }
+            asked += 1;
+            let wrench = answer.weakest(q.as_ref()).unwrap();
+            let u = answer.direction;
+            assert!((u.dot(&wrench) - set.value(&u)).abs() <= 1e-9 * set.extent());
+            assert_eq!(answer.is_at_least(answer.lower), Some(true));
+            assert_eq!(answer.is_at_least(answer.upper * 1.001), Some(false));
+            if answer.lower < answer.upper {
+                assert_eq!(answer.is_at_least(answer.upper), None);
+            }
+            // The solver's other question: can the grasp exert it?
+            let ray = memory.solver().solve(&set, &Segment::new(wrench).unwrap(), &Options::default());
+            assert!(ray.lower <= 1.0 + 1e-6 && ray.upper >= 1.0 - 2e-3, "{} {}", ray.lower, ray.upper);
+        }
+    }
+}
