@@ -155,6 +155,25 @@ fn check<T: Real>(
     best.0
 }
 
+/// Four points of one contact's disc span the disc's space: a fifth makes slivers, the surface touches itself, and facets share several ridges
+/// with one neighbour. That is no reason to stop.
+#[test]
+fn surfaces_that_touch_themselves_still_converge() {
+    let mut dice = Dice::new(73);
+    let options = Options { relative: 1e-3, ..Options::default() };
+    let mut held = 0;
+    for round in 0..600 {
+        let grasp = Grasp::<f64>::new(contacts(&mut dice, 5, 0.6, 0.3), 1.0, Norm::L1);
+        let mut memory = Memory::new::<f64, 6>(256, 4096);
+        let answer = memory.solver::<f64, 6>().solve(&grasp.set(), &Ball::unit(), &options);
+        if answer.upper > 1e-3 {
+            assert_eq!(answer.outcome, Outcome::Converged, "grasp {round}: [{:e}, {:e}]", answer.lower, answer.upper);
+            held += 1;
+        }
+    }
+    assert!(held > 500);
+}
+
 /// Iterations, capacities and thresholds of any size; interrupts at the same places; with symmetry told and not told.
 fn budgets<T: Real>() {
     let mut dice = Dice::new(71);

@@ -110,7 +110,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 }
                 let below = (outside.normal.dot(&point) - outside.offset).at_most(T::zero());
                 let normal = Self::join(above, below, &eliminated.normal, &outside.normal);
-                let back = outside.slot_towards(at)?;
+                let back = outside.slot_towards(at, eliminated.vertices[i])?;
 
                 let mut vertices = eliminated.vertices;
                 vertices[i] = apex;
@@ -144,7 +144,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                     if j == i || *self.facet(made)?.neighbors.get(j)? != NONE {
                         continue;
                     }
-                    let (other, slot) = self.turn(at, around[j], corners[i], visible)?;
+                    let (other, slot) = self.turn(at, around[j], [corners[i], corners[j]], visible)?;
                     *self.facet_mut(made)?.neighbors.get_mut(j)? = other;
                     *self.facet_mut(other)?.neighbors.get_mut(slot)? = made;
                 }
@@ -155,9 +155,15 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// Turns around a sub-ridge through the visible patch, from facet `at` across the ridge to `next`, until a new facet is met; returns
-    /// it and its slot opposite the sub-ridge. `kept` is the vertex of `at` on that ridge which is not on the sub-ridge. At
-    /// most one step per visible facet.
-    fn turn(&self, mut at: Index, mut next: Index, mut kept: Index, visible: usize) -> Option<(Index, usize)> {
+    /// it and its slot opposite the sub-ridge. `kept` is the vertex of `at` on that ridge which is not on the sub-ridge, `left` the one off the
+    /// ridge. At most one step per visible facet.
+    fn turn(
+        &self,
+        mut at: Index,
+        mut next: Index,
+        [mut kept, mut left]: [Index; 2],
+        visible: usize,
+    ) -> Option<(Index, usize)> {
         for _ in 0..=visible {
             let neighbor = self.facet(next)?;
             let across = neighbor.slot(kept)?;
@@ -165,7 +171,8 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 return Some((next, across));
             }
             debug_assert!(next != at);
-            let entered = neighbor.slot_towards(at)?;
+            let entered = neighbor.slot_towards(at, left)?;
+            left = kept;
             kept = *neighbor.vertices.get(entered)?;
             at = next;
             next = *neighbor.neighbors.get(across)?;

@@ -70,10 +70,14 @@ impl<T: Real, const N: usize> Facet<T, N> {
         self.state == State::Live
     }
 
-    /// The slot of a neighbour. There is one: two facets never have all vertices in common, since a new facet contains the new
-    /// point and one ridge of the old surface.
-    fn slot_towards(&self, neighbor: Index) -> Option<usize> {
-        place(&self.neighbors, neighbor)
+    /// The slot of a neighbour that is met across the ridge opposite its vertex `left`. There is one such neighbour, since two ridges have all
+    /// vertices of a facet. But where rounding has made the surface touch itself, two facets may have all vertices in common and
+    /// several ridges; each is opposite one and the same vertex in both.
+    #[inline(always)]
+    fn slot_towards(&self, neighbor: Index, left: Index) -> Option<usize> {
+        let slot = place(&self.neighbors, neighbor)?;
+        let once = self.neighbors.iter().filter(|&&n| n == neighbor).count() == 1;
+        if once { Some(slot) } else { self.slot(left) }
     }
 
     /// The slot of a vertex.
@@ -82,7 +86,7 @@ impl<T: Real, const N: usize> Facet<T, N> {
     }
 }
 
-/// Where an index stands in a list that holds it at most once. Without branches: which slot it is cannot be predicted.
+/// Where an index stands in a list, last. Without branches: which slot it is cannot be predicted.
 #[inline(always)]
 fn place<const N: usize>(list: &[Index; N], index: Index) -> Option<usize> {
     let mut slot = N;
