@@ -35,11 +35,11 @@ compiler:
 
 lib: compiler
 	@echo "building $(lib) (no std, release)"
-	@$(CARGO) rustc --quiet --locked --lib --release --features capi,panic-handler --crate-type staticlib
+	@$(CARGO) rustc --quiet --locked --lib --release --features capi,grasp,panic-handler --crate-type staticlib
 
 lib-std: compiler
 	@echo "building $(lib_std) (std, debug)"
-	@$(CARGO) rustc --quiet --locked --lib --features capi,std --crate-type staticlib
+	@$(CARGO) rustc --quiet --locked --lib --features capi,grasp,std --crate-type staticlib
 
 header:
 	@echo "writing src/capi/f32/ and include/qdist.h"
@@ -63,7 +63,8 @@ define c-tests
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bad_arguments.c $(3) -lm -o $(out)/$(1)/bad_arguments
 	@$(CC) $(CFLAGS_TEST) $(2) -DCARGO_VERSION='"$(version)"' ffi-tests/abi.c $(3) -lm -o $(out)/$(1)/abi
 	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/smoke_cpp.cpp $(3) -lm -o $(out)/$(1)/smoke_cpp
-	@for test in smoke bad_arguments abi smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/grasp.c $(3) -lm -o $(out)/$(1)/grasp
+	@for test in smoke bad_arguments abi grasp smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
 endef
 
 test-c: lib lib-std
@@ -73,7 +74,7 @@ test-c: lib lib-std
 	$(call c-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std) -lpthread -ldl,)
 	@if command -v valgrind >/dev/null; then \
 	    echo "C and C++ tests under valgrind"; \
-	    for test in smoke bad_arguments abi smoke_cpp; do \
+	    for test in smoke bad_arguments abi grasp smoke_cpp; do \
 	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
 	    done; \
 	else echo "valgrind is not installed: its runs are skipped"; fi

@@ -151,6 +151,33 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // All points of a hull lie in one plane: use qdist_points.
 #define QDIST_ERROR_FLAT 13
 
+// A contact's position is not finite or too large.
+#define QDIST_ERROR_CONTACT_POSITION 14
+
+// A contact's normal is not a unit vector.
+#define QDIST_ERROR_CONTACT_NORMAL 15
+
+// A contact's tangents are not unit vectors with n = o x t.
+#define QDIST_ERROR_CONTACT_TANGENTS 16
+
+// A contact's friction model is not known, or a coefficient is negative, not finite or too large.
+#define QDIST_ERROR_CONTACT_FRICTION 17
+
+// A contact's force cap is negative, not finite or too large.
+#define QDIST_ERROR_CONTACT_CAP 18
+
+// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
+#define QDIST_ERROR_CONTACT_JACOBIAN 19
+
+// A contact's wrench is too large: a position or friction that is huge for the torque scale.
+#define QDIST_ERROR_CONTACT_WRENCH 20
+
+// The reference point is not finite, or the torque scale is not a positive number of usual size.
+#define QDIST_ERROR_FRAME 21
+
+// A rank tolerance below 16 roundoffs or above 1/2.
+#define QDIST_ERROR_TOLERANCE 22
+
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
 

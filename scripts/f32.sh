@@ -2,9 +2,9 @@
 # Writes src/capi/f32/ from src/capi/f64/. With --check: fails when that would change something.
 set -eu
 cd "$(dirname "$0")/../src/capi"
-mkdir -p f32
-for file in f64/*.rs; do
-    name=$(basename "$file")
+mkdir -p f32/grasp
+for file in f64/*.rs f64/grasp/*.rs; do
+    name=${file#f64/}
     {
         echo "// generated from f64/$name by \`make header\`; do not edit"
         sed -e 's/f64/f32/g; s/F64/F32/g; s/DBL_MAX (float: FLT_MAX)/FLT_MAX/; s/-DBL_MAX or FLT_MAX/-FLT_MAX or FLT_MAX/' "$file"

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Writes include/qdist.h. With --check: fails when that would change it.
+# Writes include/qdist.h and include/qdist_grasp.h. With --check: fails when that would change one of them.
 set -eu
 cd "$(dirname "$0")/.."
 version=0.29.4
 out=$(mktemp)
-trap 'rm -f "$out" "$out.toml" "$out.warnings"' EXIT
+trap 'rm -f "$out" "$out.grasp" "$out.toml" "$out.warnings"' EXIT
 
 if ! cbindgen --version 2>/dev/null | grep -qF "cbindgen $version"; then
     echo "installing cbindgen $version" >&2
@@ -28,21 +28,29 @@ chapter() {
     grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skipping .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
-{
-    cat src/capi/prelude.h
-    for file in status version symmetry f64/solver f64/sets f64/shapes f64/points f64/combine f64/gauges f64/query f64/span f64/warm; do
-        chapter cbindgen.toml "src/capi/$file.rs" ""
-    done
-    { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-    for file in solver sets shapes points combine gauges query span warm; do
-        chapter "$out.toml" "src/capi/f32/$file.rs" ", FLOAT"
-    done
+# A header: what it begins with, chapters without a scalar, and chapters for both.
+header() {
+    cat "$1"
+    for file in $2; do chapter cbindgen.toml "src/capi/$file.rs" ""; done
+    for file in $3; do chapter cbindgen.toml "src/capi/f64/$file.rs" ""; done
+    for file in $3; do chapter "$out.toml" "src/capi/f32/$file.rs" ", FLOAT"; done
     printf '\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n'
-} | cat -s >"$out"
+}
 
-if [ "${1:-}" = --check ]; then
-    diff -u include/qdist.h "$out" || { echo "include/qdist.h: stale; run \`make header\`" >&2; exit 1; }
-else
-    cp "$out" include/qdist.h
-    chmod 644 include/qdist.h
-fi
+{ echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
+header src/capi/prelude.h "status version symmetry" "solver sets shapes points combine gauges query span warm" |
+    cat -s >"$out"
+header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality" | cat -s >"$out.grasp"
+
+# $1: what was written, $2: the header.
+install() {
+    if [ "$check" = --check ]; then
+        diff -u "$2" "$1" || { echo "$2: stale; run \`make header\`" >&2; exit 1; }
+    else
+        cp "$1" "$2"
+        chmod 644 "$2"
+    fi
+}
+check=${1:-}
+install "$out" include/qdist.h
+install "$out.grasp" include/qdist_grasp.h

@@ -10,11 +10,11 @@ target=${CARGO_TARGET_DIR:-target}/purity
 cc=${CC:-cc}
 
 echo "building the library with must-not-panic"
-cargo rustc --quiet --locked --lib --release --features capi,must-not-panic --crate-type staticlib --target-dir "$target"
+cargo rustc --quiet --locked --lib --release --features capi,grasp,must-not-panic --crate-type staticlib --target-dir "$target"
 lib=$target/release/libqdist.a
 
 # Functions of the header, from its declarations after the preprocessor.
-functions=$("$cc" -E -P -Iinclude include/qdist.h | tr '\n' ' ' | tr ';' '\n' | sed -n 's/^.*[ *]\(qdist_[a-z0-9_]*\)(.*$/\1/p' | sort -u)
+functions=$("$cc" -E -P -Iinclude include/qdist_grasp.h | tr '\n' ' ' | tr ';' '\n' | sed -n 's/^.*[ *]\(qdist_[a-z0-9_]*\)(.*$/\1/p' | sort -u)
 count=$(echo "$functions" | wc -l)
 roots=$(echo "$functions" | sed 's/^/-u /')
 memory='--defsym=memcpy=0 --defsym=memset=0 --defsym=memmove=0 --defsym=memcmp=0 --defsym=bcmp=0'

@@ -66,18 +66,29 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         options: &Options<T, N>,
     ) -> Option<Best<T, N>> {
+        self.best_of_until(sets, q, options, None)
+    }
+
+    /// The same with a deadline, as in [`solve_until`](Solver::solve_until): once it has passed, each set keeps the bounds that it has.
+    pub fn best_of_until<S: Support<T, N>>(
+        &mut self,
+        sets: impl IntoIterator<Item = S>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Best<T, N>> {
         let full = Options { threshold: None, ..*options };
         let mut best: Option<Best<T, N>> = None;
         for (index, set) in sets.into_iter().enumerate() {
             let Some(so_far) = &mut best else {
-                let answer = self.solve(&set, q, &full);
+                let answer = self.solve_until(&set, q, &full, interrupt);
                 best = Some(Best { index, ceiling: answer.upper, answer });
                 continue;
             };
             let threshold = so_far.answer.lower;
-            let mut answer = self.solve(&set, q, &Options { threshold: Some(threshold), ..full });
+            let mut answer = self.solve_until(&set, q, &Options { threshold: Some(threshold), ..full }, interrupt);
             if answer.outcome == Outcome::Above {
-                answer = self.solve(&set, q, &Options { guess: Some(answer.direction), ..full });
+                answer = self.solve_until(&set, q, &Options { guess: Some(answer.direction), ..full }, interrupt);
             }
             so_far.ceiling = so_far.ceiling.at_least(answer.upper);
             if answer.lower > threshold {

@@ -43,6 +43,24 @@ pub const QDIST_ERROR_ROTATION: qdist_status = 11;
 pub const QDIST_ERROR_CALLBACK: qdist_status = 12;
 /// All points of a hull lie in one plane: use qdist_points.
 pub const QDIST_ERROR_FLAT: qdist_status = 13;
+/// A contact's position is not finite or too large.
+pub const QDIST_ERROR_CONTACT_POSITION: qdist_status = 14;
+/// A contact's normal is not a unit vector.
+pub const QDIST_ERROR_CONTACT_NORMAL: qdist_status = 15;
+/// A contact's tangents are not unit vectors with n = o x t.
+pub const QDIST_ERROR_CONTACT_TANGENTS: qdist_status = 16;
+/// A contact's friction model is not known, or a coefficient is negative, not finite or too large.
+pub const QDIST_ERROR_CONTACT_FRICTION: qdist_status = 17;
+/// A contact's force cap is negative, not finite or too large.
+pub const QDIST_ERROR_CONTACT_CAP: qdist_status = 18;
+/// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
+pub const QDIST_ERROR_CONTACT_JACOBIAN: qdist_status = 19;
+/// A contact's wrench is too large: a position or friction that is huge for the torque scale.
+pub const QDIST_ERROR_CONTACT_WRENCH: qdist_status = 20;
+/// The reference point is not finite, or the torque scale is not a positive number of usual size.
+pub const QDIST_ERROR_FRAME: qdist_status = 21;
+/// A rank tolerance below 16 roundoffs or above 1/2.
+pub const QDIST_ERROR_TOLERANCE: qdist_status = 22;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -115,6 +133,15 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_ROTATION => c"not a rotation",
         QDIST_ERROR_CALLBACK => c"callback failed",
         QDIST_ERROR_FLAT => c"points lie in a plane",
+        QDIST_ERROR_CONTACT_POSITION => c"contact position not finite or too large",
+        QDIST_ERROR_CONTACT_NORMAL => c"contact normal not of unit length",
+        QDIST_ERROR_CONTACT_TANGENTS => c"contact tangents not orthonormal",
+        QDIST_ERROR_CONTACT_FRICTION => c"contact friction out of range",
+        QDIST_ERROR_CONTACT_CAP => c"contact force cap out of range",
+        QDIST_ERROR_CONTACT_JACOBIAN => c"contact Jacobian out of range",
+        QDIST_ERROR_CONTACT_WRENCH => c"contact wrench too large",
+        QDIST_ERROR_FRAME => c"wrench frame out of range",
+        QDIST_ERROR_TOLERANCE => c"rank tolerance out of range",
         _ => c"unknown status",
     }
     .as_ptr()

@@ -70,9 +70,19 @@ impl<T: Real> Solver<'_, T, 6> {
     /// # Ok::<(), ContactError>(())
     /// ```
     pub fn force_closure(&mut self, w: &dyn Support<T, 6>, options: &Options<T, 6>) -> Closure<T> {
+        self.force_closure_until(w, options, None)
+    }
+
+    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
+    pub fn force_closure_until(
+        &mut self,
+        w: &dyn Support<T, 6>,
+        options: &Options<T, 6>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Closure<T> {
         let rounding = T::count(16) * w.error() + T::count(256) * T::ROUNDOFF * w.extent();
         let options = Options { threshold: Some(rounding.at_least(T::TINY)), ..*options };
-        let answer = self.solve(w, &Ball::unit(), &options);
+        let answer = self.solve_until(w, &Ball::unit(), &options, interrupt);
         let direction = answer.direction;
         match answer.outcome {
             Outcome::SupportFailed => Closure::Undecided { direction },

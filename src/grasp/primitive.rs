@@ -56,6 +56,12 @@ impl<T: Real> Primitive<T> {
         Ok(Self { center, disc, empty: false, rounding: T::zero() })
     }
 
+    /// A primitive of numbers that [`rounding`](Self::rounding) and the public functions told; they are not checked.
+    #[cfg(feature = "capi")]
+    pub(crate) fn of_parts(center: Vector<T, 6>, disc: SMatrix<T, 6, 3>, rounding: T, empty: bool) -> Self {
+        Self { center, disc, empty, rounding }
+    }
+
     /// All wrenches of the contact with its full normal force, whoever generates them: G(U) with the U of eq. 7 times
     /// the force cap. The center is the wrench of the normal force, the disc that of mu o, mu t and mus about n.
     ///
@@ -89,6 +95,12 @@ impl<T: Real> Primitive<T> {
     /// The disc as a matrix; its columns need not be orthogonal, and some may be zero.
     pub fn disc(&self) -> &SMatrix<T, 6, 3> {
         &self.disc
+    }
+
+    /// How far rounding may have moved it when it was made.
+    #[cfg(feature = "capi")]
+    pub(crate) fn rounding(&self) -> T {
+        self.rounding
     }
 
     /// Has it no wrench at all?

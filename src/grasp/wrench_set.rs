@@ -98,6 +98,12 @@ impl<'a, T: Real, C: Contribution<T>> WrenchSet<'a, T, C> {
         set
     }
 
+    /// A set for support calls only: it knows neither extent nor error.
+    #[cfg(feature = "capi")]
+    pub(crate) fn without_size(contributions: &'a [C], norm: Norm) -> Self {
+        Self { contributions, norm, extent: T::zero(), error: T::zero() }
+    }
+
     /// What its contacts or fingers contribute.
     pub fn contributions(&self) -> &'a [C] {
         self.contributions

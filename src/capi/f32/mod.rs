@@ -3,6 +3,8 @@
 
 pub mod combine;
 pub mod gauges;
+#[cfg(feature = "grasp")]
+pub mod grasp;
 pub mod points;
 pub mod query;
 pub mod sets;

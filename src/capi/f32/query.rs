@@ -277,7 +277,7 @@ pub unsafe extern "C" fn qdist_solve6_f32(
 ///
 /// # Safety
 /// If not NULL and aligned, `options` is valid for reads; during the query `interrupt` may be called.
-unsafe fn convert<const N: usize>(options: *const qdist_options_f32) -> Check<(Options<f32, N>, Deadline)> {
+pub(super) unsafe fn convert<const N: usize>(options: *const qdist_options_f32) -> Check<(Options<f32, N>, Deadline)> {
     if options.is_null() {
         return Ok((Options::default(), Deadline::NEVER));
     }
@@ -328,7 +328,7 @@ fn from_depth(depth: &Depth<f32>) -> qdist_depth_f32 {
     }
 }
 
-fn from_answer<const N: usize>(answer: &Answer<f32, N>, code: i32) -> qdist_result_f32 {
+pub(super) fn from_answer<const N: usize>(answer: &Answer<f32, N>, code: i32) -> qdist_result_f32 {
     let vector = |v: &Vector<f32, N>| padded(v.iter().copied());
     let mut result = qdist_result_f32 {
         struct_size: size_of::<qdist_result_f32>() as u32,

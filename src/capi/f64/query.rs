@@ -276,7 +276,7 @@ pub unsafe extern "C" fn qdist_solve6_f64(
 ///
 /// # Safety
 /// If not NULL and aligned, `options` is valid for reads; during the query `interrupt` may be called.
-unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<(Options<f64, N>, Deadline)> {
+pub(super) unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<(Options<f64, N>, Deadline)> {
     if options.is_null() {
         return Ok((Options::default(), Deadline::NEVER));
     }
@@ -327,7 +327,7 @@ fn from_depth(depth: &Depth<f64>) -> qdist_depth_f64 {
     }
 }
 
-fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) -> qdist_result_f64 {
+pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) -> qdist_result_f64 {
     let vector = |v: &Vector<f64, N>| padded(v.iter().copied());
     let mut result = qdist_result_f64 {
         struct_size: size_of::<qdist_result_f64>() as u32,

@@ -1,0 +1,6 @@
+// generated from f64/grasp/mod.rs by `make header`; do not edit
+//! Grasps from C, for `f32`.
+
+pub mod contacts;
+pub mod quality;
+pub mod wrenches;

@@ -1,0 +1,5 @@
+//! Grasps from C, for `f64`.
+
+pub mod contacts;
+pub mod quality;
+pub mod wrenches;
