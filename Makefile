@@ -7,6 +7,7 @@
 #   make stack          stack bytes of a query              
 #   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
 #   make bench-dq OUT=dir [QUICK=1]      d_Q in up to six dimensions: table, exponents, pictures, bars
+#   make bench-grasp OUT=dir [QUICK=1]   grasps: what planners and controllers ask, in times and rates
 #
 # Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
 # is possible, cbindgen by cargo.
@@ -26,7 +27,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
       else echo "please install: $(1)" >&2; exit 1; fi
 
-.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare bench-dq compiler clean
+.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare bench-dq bench-grasp compiler clean
 all: lib
 
 compiler:
@@ -115,6 +116,11 @@ bench-dq: OUT = out/dq
 bench-dq:
 	@echo "measuring d_Q; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --features std --bench dq -- $(if $(QUICK),--quick) $(OUT)
+
+bench-grasp: OUT = out/grasp
+bench-grasp:
+	@echo "measuring grasps; results go to $(OUT)"
+	@$(CARGO) bench --quiet --locked --features std,grasp --bench grasp -- $(if $(QUICK),--quick) $(OUT)
 
 test:
 	@scripts/test.sh

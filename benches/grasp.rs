@@ -1,0 +1,136 @@
+//! Grasps: what a planner and a controller pay for an answer.
+//!
+//! `make bench-grasp OUT=dir [QUICK=1]` prints a table and writes `dir/grasp.csv`: one row per kind of question, number of contacts, norm and
+//! tolerance, with the median, 90th percentile and maximum time over random force-closed grasps of soft fingers on a unit ball, and how many
+//! such questions are answered in a second. All in `f64`, in one workspace of 512 vertices and 4096 facets.
+
+#[allow(dead_code)]
+#[path = "../tests/common/dice.rs"]
+mod dice;
+
+use dice::Dice;
+use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet};
+use qdist::qset::Ball;
+use qdist::{Options, Outcome, Vector, Workspace};
+use std::fmt::Write;
+use std::time::Instant;
+
+type Memory = Workspace<f64, 6, 512, 4096>;
+type Grasp = Vec<Primitive<f64>>;
+
+/// A soft fingertip that presses roughly towards the middle of the unit ball.
+fn fingertip(dice: &mut Dice) -> Primitive<f64> {
+    let p = Vector::<f64, 3>::from(dice.direction::<3>());
+    let n = (Vector::<f64, 3>::from(dice.direction::<3>()) * 0.3 - p).normalize();
+    let friction = Friction::Soft { mu: dice.range(0.3, 1.0), mus: dice.range(0.1, 0.4) };
+    let frame = WrenchFrame::new(Vector::zeros(), 1.0).expect("a frame");
+    let contact = Contact::new(p, n, friction).expect("a contact");
+    Primitive::passive(&contact, &frame).expect("a primitive")
+}
+
+/// Force-closed grasps of so many contacts.
+fn grasps(dice: &mut Dice, memory: &mut Memory, contacts: usize, count: usize) -> Vec<Grasp> {
+    let mut found = Vec::new();
+    while found.len() < count {
+        let grasp: Grasp = (0..contacts).map(|_| fingertip(dice)).collect();
+        let set = WrenchSet::new(&grasp, Norm::LInf);
+        if memory.solver().force_closure(&set, &Options::default()).is_closed() {
+            found.push(grasp);
+        }
+    }
+    found
+}
+
+/// Seconds that each of a list of questions takes; every one is asked three times, and the least counts.
+fn times<S>(list: &[S], mut ask: impl FnMut(&S)) -> Vec<f64> {
+    let mut seconds: Vec<f64> = Vec::new();
+    for item in list {
+        let once = || {
+            let start = Instant::now();
+            ask(item);
+            start.elapsed().as_secs_f64()
+        };
+        seconds.push(std::iter::repeat_with(once).take(3).fold(f64::MAX, f64::min));
+    }
+    seconds.sort_by(f64::total_cmp);
+    seconds
+}
+
+struct Report {
+    csv: String,
+}
+
+impl Report {
+    fn row(&mut self, question: &str, contacts: usize, norm: Norm, relative: f64, seconds: &[f64]) -> f64 {
+        let n = seconds.len();
+        let [median, p90, most] = [n / 2, n * 9 / 10, n - 1].map(|i| seconds[i] * 1e3);
+        let rate = n as f64 / seconds.iter().sum::<f64>();
+        let norm = if norm == Norm::L1 { "L1" } else { "Linf" };
+        println!(
+            "{question:<14} {contacts:>3} {norm:<5} {relative:>7.0e} {median:>9.4} {p90:>9.4} {most:>9.3} {rate:>9.0}"
+        );
+        let _ = writeln!(self.csv, "{question},{contacts},{norm},{relative:e},{n},{median},{p90},{most},{rate}");
+        median
+    }
+}
+
+fn main() -> std::process::ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let quick = arguments.iter().any(|a| a == "--quick");
+    let out = arguments.iter().find(|a| !a.starts_with("--")).cloned().unwrap_or("out/grasp".into());
+    let count = if quick { 20 } else { 100 };
+    let mut dice = Dice::new(2013);
+    let mut memory = Box::new(Memory::new());
+    let mut report =
+        Report { csv: "question,contacts,norm,relative,grasps,median_ms,p90_ms,max_ms,per_second\n".into() };
+    println!(
+        "{:<14} {:>3} {:<5} {:>7} {:>9} {:>9} {:>9} {:>9}",
+        "question", "m", "norm", "rel", "median ms", "p90 ms", "max ms", "per s"
+    );
+    let mut bars = Vec::new();
+    for contacts in [2, 3, 4, 5, 8] {
+        let list = grasps(&mut dice, &mut memory, contacts, count);
+        for norm in [Norm::L1, Norm::LInf] {
+            let seconds = times(&list, |g| {
+                memory.solver().force_closure(&WrenchSet::new(g, norm), &Options::default());
+            });
+            report.row("closed?", contacts, norm, 0.0, &seconds);
+            for relative in [1e-2, 1e-3, 1e-4] {
+                let options = Options { relative, ..Options::default() };
+                let mut open = 0;
+                let seconds = times(&list, |g| {
+                    let answer = memory.solver().solve(&WrenchSet::new(g, norm), &Ball::unit(), &options);
+                    open += usize::from(answer.outcome != Outcome::Converged);
+                });
+                assert_eq!(open, 0, "queries that did not converge");
+                let median = report.row("efficiency", contacts, norm, relative, &seconds);
+                match (contacts, norm, relative) {
+                    (5, Norm::LInf, 1e-2) => bars.push(("five soft contacts, Linf, 1 %", median, 2.0)),
+                    (5, Norm::LInf, 1e-3) => bars.push(("five soft contacts, Linf, 0.1 %", median, 20.0)),
+                    _ => {}
+                }
+            }
+            for relative in [1e-2, 1e-3] {
+                let options = Options { relative, ..Options::default() };
+                let seconds = times(&[&list], |list| {
+                    let sets = list.iter().map(|g| WrenchSet::new(g, norm));
+                    memory.solver().best_of(sets, &Ball::unit(), &options);
+                });
+                let each = vec![seconds[0] / count as f64; count];
+                report.row("best of all", contacts, norm, relative, &each);
+            }
+        }
+    }
+    println!();
+    for (what, median, bar) in &bars {
+        println!("{what}: {median:.3} ms, bar {bar} ms: {}", if median <= bar { "met" } else { "MISSED" });
+    }
+    let path = std::path::Path::new(&out).join("grasp.csv");
+    match std::fs::create_dir_all(&out).and_then(|()| std::fs::write(&path, &report.csv)) {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{}: {error}", path.display());
+            std::process::ExitCode::FAILURE
+        }
+    }
+}
