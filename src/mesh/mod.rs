@@ -43,6 +43,6 @@ mod surface;
 pub mod topology;
 
 pub use check::Report;
-pub use proximity::{Counters, Pair};
+pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};
 pub use surface::{MAX_COORDINATE, Mesh, MeshError};
 pub use topology::{Edge, EdgeKind, Feature, Topology};

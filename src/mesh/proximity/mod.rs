@@ -14,9 +14,17 @@
 //! A pose that is not finite, whose quaternion is not near unit length, or that moves farther than
 //! [`MAX_COORDINATE`](super::MAX_COORDINATE) is never free: it collides, has distance 0 and no contacts.
 
+mod candidate;
+mod contact;
+mod distance;
 mod inside;
 mod relative;
+mod screw;
 mod triangle;
+
+pub use contact::Contact;
+pub use distance::Distance;
+pub use screw::{Impact, Screw, Stop};
 
 use super::Mesh;
 use inside::is_inside;
@@ -41,15 +49,27 @@ pub struct Pair<'m> {
     a: &'m Mesh,
     b: &'m Mesh,
     stack: Vec<(u32, u32)>,
+    /// Pairs of boxes with the squares of lower bounds of their distances.
+    bounded: Vec<(f64, (u32, u32))>,
     /// The triangles that met last.
     met: (u32, u32),
+    /// The triangles that were nearest last.
+    nearest: (u32, u32),
     counters: Counters,
 }
 
 impl<'m> Pair<'m> {
     /// A pair. O(1).
     pub fn new(a: &'m Mesh, b: &'m Mesh) -> Pair<'m> {
-        Pair { a, b, stack: Vec::with_capacity(256), met: (0, 0), counters: Counters::default() }
+        Pair {
+            a,
+            b,
+            stack: Vec::with_capacity(256),
+            bounded: Vec::with_capacity(256),
+            met: (0, 0),
+            nearest: (0, 0),
+            counters: Counters::default(),
+        }
     }
 
     /// The mesh that moves.

@@ -125,3 +125,15 @@ pub(super) fn nearest_on_segments(p: &Point3<f64>, d: &Vector3<f64>, q: &Point3<
         (s, t)
     }
 }
+
+/// A lower bound of the squared distance: the gaps along both normals.
+#[inline]
+pub(super) fn plane_gap_squared(a: &Triangle, b: &Triangle) -> f64 {
+    let along = |[p, q, r]: &Triangle, other: &Triangle| {
+        let n = (q - p).cross(&(r - p));
+        let [x, y, z] = other.each_ref().map(|v| (v - p).dot(&n));
+        let gap = x.min(y).min(z).max(-x.max(y).max(z)).max(0.0);
+        if gap > 0.0 { gap * gap / n.norm_squared() } else { 0.0 }
+    };
+    along(a, b).max(along(b, a))
+}
