@@ -56,6 +56,8 @@ pub struct Mesh {
     report: Report,
     bvh: Bvh,
     scale: f64,
+    /// Per vertex, the sum of the faces' unit normals, each times its angle there.
+    vertex_normals: Vec<Vector3<f64>>,
     /// Per component, its vertices that are extreme along the axes: low x, high x, low y, ...
     extremes: Vec<[u32; 6]>,
 }
@@ -89,8 +91,19 @@ impl Mesh {
         let corners: Vec<_> = triangles.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
         let bvh = Bvh::new(&corners);
         let extremes = extremes(&vertices, triangles, &topology);
+        let vertex_normals = vertex_normals(vertices.len(), triangles, &corners);
         let scale = corners.iter().flatten().fold(0.0f64, |m, p| m.max(p.coords.amax()));
-        Ok(Mesh { vertices, triangles: triangles.to_vec(), corners, topology, report, bvh, scale, extremes })
+        Ok(Mesh {
+            vertices,
+            triangles: triangles.to_vec(),
+            corners,
+            topology,
+            report,
+            bvh,
+            scale,
+            vertex_normals,
+            extremes,
+        })
     }
 
     /// The vertices, as given.
@@ -140,6 +153,17 @@ impl Mesh {
         self.scale
     }
 
+    /// The angle-weighted normal of a vertex. Where the vertex is nearest to a point, it says on which side of a closed
+    /// surface the point is (Baerentzen and Aanaes 2005).
+    pub(super) fn vertex_normal(&self, vertex: u32) -> Vector3<f64> {
+        self.vertex_normals[vertex as usize]
+    }
+
+    /// The unit normal of a triangle; zero for a degenerate one.
+    pub(super) fn normal(&self, triangle: u32) -> Vector3<f64> {
+        unit_normal(self.corners(triangle))
+    }
+
     pub(super) fn bvh(&self) -> &Bvh {
         &self.bvh
     }
@@ -173,4 +197,19 @@ fn extremes(vertices: &[Point3<f64>], triangles: &[[u32; 3]], topology: &Topolog
         }
     }
     found.into_iter().flatten().collect()
+}
+
+fn unit_normal([p, q, r]: &[Point3<f64>; 3]) -> Vector3<f64> {
+    (q - p).cross(&(r - p)).try_normalize(0.0).unwrap_or_default()
+}
+
+fn vertex_normals(count: usize, triangles: &[[u32; 3]], corners: &[[Point3<f64>; 3]]) -> Vec<Vector3<f64>> {
+    let mut sums = vec![Vector3::zeros(); count];
+    for (triangle, p) in triangles.iter().zip(corners) {
+        let normal = unit_normal(p);
+        for k in 0..3 {
+            sums[triangle[k] as usize] += normal * (p[(k + 1) % 3] - p[k]).angle(&(p[(k + 2) % 3] - p[k]));
+        }
+    }
+    sums
 }

@@ -62,21 +62,27 @@ pub fn tetrahedron() -> Shape {
     }
 }
 
-/// The polygon (counterclockwise, star-shaped about its first corner) times [-half, half] along z.
-pub fn prism(polygon: &[[f64; 2]], half: f64) -> Shape {
+/// The polygon (counterclockwise) times [-half, half] along z, with the triangles of its caps.
+pub fn prism_capped(polygon: &[[f64; 2]], caps: &[[u32; 3]], half: f64) -> Shape {
     let n = polygon.len() as u32;
     let mut shape = Shape::default();
     for z in [-half, half] {
         shape.vertices.extend(polygon.iter().map(|&[x, y]| [x, y, z]));
     }
-    for i in 1..n - 1 {
-        shape.triangles.extend([[0, i + 1, i], [n, n + i, n + i + 1]]);
+    for &[a, b, c] in caps {
+        shape.triangles.extend([[a, c, b], [n + a, n + b, n + c]]);
     }
     for i in 0..n {
         let j = (i + 1) % n;
         shape.triangles.extend([[i, j, n + j], [i, n + j, n + i]]);
     }
     shape
+}
+
+/// The same for a polygon that is star-shaped about its first corner.
+pub fn prism(polygon: &[[f64; 2]], half: f64) -> Shape {
+    let fan: Vec<_> = (1..polygon.len() as u32 - 1).map(|i| [0, i, i + 1]).collect();
+    prism_capped(polygon, &fan, half)
 }
 
 /// [-h, h], 12 triangles.
@@ -90,12 +96,11 @@ pub fn l_shape() -> Shape {
     prism(&[[1.0, 1.0], [1.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [2.0, 1.0]], 0.5)
 }
 
-/// A channel: a block of width 2 w and height h with a slot of width g from the top down to the floor f.
-pub fn slot(w: f64, h: f64, g: f64, f: f64, depth: f64) -> Shape {
+/// A channel: a block of width 2 w and height h with a slot of width g from the top down to height f.
+pub fn slot(w: f64, h: f64, g: f64, f: f64, half: f64) -> Shape {
     let s = 0.5 * g;
-    let left = cuboid([0.5 * (w - s), 0.5 * h, depth]).moved([-0.5 * (w + s), 0.5 * h, 0.0]);
-    let right = cuboid([0.5 * (w - s), 0.5 * h, depth]).moved([0.5 * (w + s), 0.5 * h, 0.0]);
-    left.and(&right).and(&cuboid([w, 0.5 * f, depth]).moved([0.0, 0.5 * f, 0.0]))
+    let section = [[-w, 0.0], [w, 0.0], [w, h], [s, h], [s, f], [-s, f], [-s, h], [-w, h]];
+    prism_capped(&section, &[[0, 1, 4], [0, 4, 5], [1, 2, 3], [1, 3, 4], [0, 5, 6], [0, 6, 7]], half)
 }
 
 /// A tube of n x m quads around a closed curve.

@@ -7,7 +7,7 @@
 //! Directions of vertex-face and edge-edge pairs are normals of faces and products of edges, so they do not
 //! depend on the gap; only their sign does, and in a touching contact the neighbourhoods of the features decide it.
 
-use super::super::{Feature, Mesh};
+use super::super::{EdgeKind, Feature, Mesh};
 use super::Pair;
 use super::candidate::{Candidate, candidates};
 use super::relative::{Relative, is_usable, walk};
@@ -78,8 +78,8 @@ fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Opti
         x.on_b - x.on_a
     };
     let fixed = match (x.feature_a, x.feature_b) {
-        (Feature::Vertex(_), Feature::Face(t)) => Some(normal(b, t)),
-        (Feature::Face(s), Feature::Vertex(_)) => Some(relative.turn(&normal(a, s))),
+        (Feature::Vertex(_), Feature::Face(t)) => Some(b.normal(t)),
+        (Feature::Face(s), Feature::Vertex(_)) => Some(relative.turn(&a.normal(s))),
         (Feature::Edge(i), Feature::Edge(j)) => Some(relative.turn(&along(a, i)).cross(&along(b, j))),
         _ => None,
     };
@@ -117,11 +117,6 @@ fn direction_scale(x: &Candidate, toward: &Vector3<f64>) -> f64 {
     }
 }
 
-fn normal(mesh: &Mesh, face: u32) -> Vector3<f64> {
-    let [p, q, r] = mesh.corners(face);
-    (q - p).cross(&(r - p)).try_normalize(0.0).unwrap_or_default()
-}
-
 fn along(mesh: &Mesh, edge: u32) -> Vector3<f64> {
     let [p, q] = mesh.topology().edges()[edge as usize].vertices.map(|v| mesh.vertices()[v as usize]);
     (q - p).try_normalize(0.0).unwrap_or_default()
@@ -138,6 +133,10 @@ fn around(mesh: &Mesh, feature: Feature) -> (Point3<f64>, &[u32]) {
 }
 
 fn in_normal_cone(mesh: &Mesh, feature: Feature, d: &Vector3<f64>, blur: f64) -> bool {
+    // From its back, a solid's feature is seen through the solid.
+    if outward(mesh, feature).is_some_and(|n| !(d.dot(&n) > 0.0)) {
+        return false;
+    }
     let (at, spanned) = around(mesh, feature);
     spanned.iter().all(|&u| {
         let side = mesh.vertices()[u as usize] - at;
@@ -146,20 +145,32 @@ fn in_normal_cone(mesh: &Mesh, feature: Feature, d: &Vector3<f64>, blur: f64) ->
     })
 }
 
-/// A direction away from the surface around a feature: from the neighbours, or a solid's normal.
-fn away(mesh: &Mesh, feature: Feature, at: &Point3<f64>) -> Vector3<f64> {
-    if let Feature::Face(f) = feature {
-        return if mesh.is_solid() { normal(mesh, f) } else { Vector3::zeros() };
+/// The outward side of a solid at a feature.
+fn outward(mesh: &Mesh, feature: Feature) -> Option<Vector3<f64>> {
+    if !mesh.is_solid() {
+        return None;
     }
-    let (_, spanned) = around(mesh, feature);
-    let mut sum = Vector3::zeros();
-    for &u in spanned {
-        let mut side = mesh.vertices()[u as usize] - at;
-        if let Feature::Edge(e) = feature {
-            let line = along(mesh, e);
-            side -= line * line.dot(&side);
+    match feature {
+        Feature::Face(f) => Some(mesh.normal(f)),
+        Feature::Vertex(v) => Some(mesh.vertex_normal(v)),
+        Feature::Edge(e) => {
+            let edge = &mesh.topology().edges()[e as usize];
+            let sum = mesh.normal(edge.faces[0]) + mesh.normal(edge.faces[1]);
+            (edge.kind != EdgeKind::Irregular).then_some(sum)
         }
-        sum -= side.try_normalize(0.0).unwrap_or_default();
     }
-    sum.try_normalize(0.0).unwrap_or_default()
+}
+
+/// A direction away from the surface around a feature: a solid's outward side, or away from the neighbours.
+fn away(mesh: &Mesh, feature: Feature, at: &Point3<f64>) -> Vector3<f64> {
+    let away = outward(mesh, feature).unwrap_or_else(|| {
+        let line = if let Feature::Edge(e) = feature { along(mesh, e) } else { Vector3::zeros() };
+        let (_, spanned) = around(mesh, feature);
+        let side = |&u: &u32| {
+            let side = mesh.vertices()[u as usize] - at;
+            (side - line * line.dot(&side)).try_normalize(0.0).unwrap_or_default()
+        };
+        -spanned.iter().map(side).sum::<Vector3<f64>>()
+    });
+    away.try_normalize(0.0).unwrap_or_default()
 }
