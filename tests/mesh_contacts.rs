@@ -88,7 +88,8 @@ fn check(a: &Mesh, b: &Mesh, seed: u64, rounds: usize, reach: f64, margin: f64) 
         let outside = |p: &Vector3<f64>, q: &Vector3<f64>| {
             let (leaves_a, leaves_b) = (p + (q - p) * 1e-4, q + (p - q) * 1e-4);
             let in_a = a.is_solid() && winding(a, &pose.inverse_transform_point(&leaves_a.into()).coords) > 0.5;
-            !in_a && !(b.is_solid() && winding(b, &leaves_b) > 0.5)
+            let in_b = b.is_solid() && winding(b, &leaves_b) > 0.5;
+            !in_a && !in_b
         };
         for c in &contacts {
             assert!(outside(&c.on_a.coords, &c.on_b.coords), "{c:?}");
