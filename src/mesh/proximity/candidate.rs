@@ -20,7 +20,8 @@ pub(super) struct Candidate {
     pub squared: f64,
 }
 
-fn feature(mesh: &Mesh, triangle: u32, place: Place) -> Feature {
+/// The feature that a place on a triangle is.
+pub(super) fn feature(mesh: &Mesh, triangle: u32, place: Place) -> Feature {
     match place {
         Place::Face => Feature::Face(triangle),
         Place::Edge(k) => Feature::Edge(mesh.topology().face_edges(triangle)[k as usize % 3]),

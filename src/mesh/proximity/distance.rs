@@ -4,6 +4,7 @@
 use super::super::Feature;
 use super::Pair;
 use super::candidate::{Candidate, any, nearest};
+use super::project::project;
 use super::relative::{Relative, is_usable, open, walk};
 use super::triangle::{apart, plane_gap_squared};
 use nalgebra::{Isometry3, Point3};
@@ -36,14 +37,7 @@ impl Pair<'_> {
         }
         let (a, b) = (self.a, self.b);
         let relative = Relative::new(pose, a, b);
-        let mut best = nearest(
-            a,
-            b,
-            &relative,
-            self.nearest.0,
-            self.nearest.1,
-            any(a, b, &relative, self.nearest.0, self.nearest.1),
-        );
+        let mut best = self.first_guess(&relative);
         let stack = &mut self.bounded;
         stack.clear();
         stack.push((relative.bound(a.bvh().root(), b.bvh().root(), f64::MAX), (0, 0)));
@@ -80,6 +74,31 @@ impl Pair<'_> {
         }
         let Candidate { feature_a, feature_b, on_a, on_b, squared } = best;
         Distance { distance: squared.sqrt(), on_a, on_b, feature_a, feature_b }
+    }
+
+    /// An upper bound to begin with: the triangles that were nearest last, and from there projections from surface to surface to and
+    /// fro as long as they get nearer.
+    fn first_guess(&mut self, relative: &Relative) -> Candidate {
+        let (a, b) = (self.a, self.b);
+        let (s, t) = self.nearest;
+        let mut best = nearest(a, b, relative, s, t, any(a, b, relative, s, t));
+        for _ in 0..8 {
+            let before = best.squared;
+            if let Some(q) = project(b, &best.on_a, best.squared, &mut self.bounded) {
+                self.nearest.1 = q.triangle;
+                best = Candidate { on_b: q.point, feature_b: q.feature, squared: q.squared, ..best };
+            }
+            let from = relative.place_back(&best.on_b);
+            if let Some(p) = project(a, &from, best.squared, &mut self.bounded) {
+                self.nearest.0 = p.triangle;
+                let on_a = relative.place(&p.point);
+                best = Candidate { on_a, feature_a: p.feature, squared: (on_a - best.on_b).norm_squared(), ..best };
+            }
+            if !(best.squared < 0.99 * before) {
+                break;
+            }
+        }
+        best
     }
 
     /// Whether the surfaces are proved to be farther apart than `distance`, at least 0. In doubt they are not.

@@ -18,6 +18,7 @@ mod candidate;
 mod contact;
 mod distance;
 mod inside;
+mod project;
 mod relative;
 mod screw;
 mod triangle;
