@@ -79,7 +79,15 @@ impl Relative {
         if in_b > enough {
             return in_b;
         }
-        in_b.max(gap(self.rotation.tr_mul(&d).abs() - a.half - self.absolute.tr_mul(&b.half)))
+        let d_a = self.rotation.tr_mul(&d);
+        let in_a = gap(d_a.abs() - a.half - self.absolute.tr_mul(&b.half));
+        // Along d itself, which no axis of the boxes may be near to: (|d|^2 - |d|.b - |R^T d|.a) / |d|.
+        let size = d.norm_squared();
+        let along = size * (1.0 - 16.0 * f64::EPSILON)
+            - d.abs().dot(&b.half.add_scalar(self.doubt))
+            - d_a.abs().dot(&a.half.add_scalar(self.doubt));
+        let along = if along > 0.0 { along * along / size } else { 0.0 };
+        in_b.max(in_a).max(along)
     }
 
     /// Whether two boxes are farther apart than the margin, by the axes of both, the gaps of one frame together, and the
