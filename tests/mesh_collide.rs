@@ -5,8 +5,9 @@ mod common;
 mod mesh_common;
 
 use common::dice::Dice;
+use common::shared;
 use mesh_common::*;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use qdist::mesh::{Mesh, Pair};
 
 fn brute_collides(a: &Mesh, b: &Mesh, pose: &Isometry3<f64>) -> bool {
@@ -151,4 +152,27 @@ fn bad_poses_are_never_free() {
         assert!(pair.collides(&Isometry3::translation(x, 0.0, 0.0)));
     }
     assert!(!pair.collides(&Isometry3::translation(1e50, 0.0, 0.0)));
+}
+
+#[test]
+fn poses_of_the_shared_queries() {
+    let Some(folder) = shared("mesh_collide", "meshes") else { return };
+    let text = std::fs::read_to_string(folder.join("queries.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let pose = |value: &serde_json::Value| {
+        let q: Vec<f64> = serde_json::from_value(value["q_wxyz"].clone()).unwrap();
+        let t: [f64; 3] = serde_json::from_value(value["t"].clone()).unwrap();
+        let rotation = UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3]));
+        Isometry3::from_parts(Vector3::from(t).into(), rotation)
+    };
+    for query in json["queries"].as_array().unwrap() {
+        let mesh = |key: &str| read_obj(&folder.join(query[key].as_str().unwrap())).mesh();
+        let (a, b) = (mesh("A"), mesh("B"));
+        let mut pair = Pair::new(&a, &b);
+        assert!(pair.collides(&pose(&query["pose0"])), "{}", query["id"]);
+        for best in ["disp_pose", "sigma_pose"] {
+            let free = pose(&query[best]);
+            assert!(!pair.collides(&free) && pair.distance(&free).distance > 0.0, "{} {best}", query["id"]);
+        }
+    }
 }

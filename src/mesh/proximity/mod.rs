@@ -9,6 +9,13 @@
 //! A polygon soup has no inside. Against a solid it collides when one of its components is in there; two soups collide where their surfaces meet
 //! ([`Pair::has_inside`]).
 //!
+//! # How
+//!
+//! All queries walk over pairs of boxes (`relative`) and end at pairs of triangles, which are separated by axes
+//! (`triangle`) or asked for the features that they own (`candidate`). The solid test adds rays (`inside`). `distance` begins with an upper
+//! bound by projecting from surface to surface (`project`), `contact` keeps what lies in both normal cones, and
+//! `screw` strings distances together to motions. What decided the last query of a kind is tried first in the next.
+//!
 //! # Poses
 //!
 //! A pose that is not finite, whose quaternion is not near unit length, or that moves farther than
