@@ -1,0 +1,48 @@
+//! Triangle meshes: what they are made of, and how two of them lie to each other.
+//!
+//! Everything here is `f64` only and may allocate, but only when something is built; queries reuse the memory of their
+//! [`Pair`]. A pose is an [`Isometry3`](nalgebra::Isometry3) that places A in the frame of B: x_B = R x_A + t. B rests. Every point and every
+//! direction that a query returns is in the frame of B.
+//!
+//! ```
+//! use qdist::mesh::{Mesh, Pair};
+//! use qdist::nalgebra::{Isometry3, Vector3};
+//!
+//! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let tetrahedron = Mesh::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+//! assert!(tetrahedron.is_solid());
+//!
+//! let mut pair = Pair::new(&tetrahedron, &tetrahedron);
+//! assert!(pair.collides(&Isometry3::translation(0.1, 0.1, 0.1)));
+//! let apart = Isometry3::from_parts(Vector3::new(0.0, 0.0, 1.5).into(), Default::default());
+//! assert!(!pair.collides(&apart));
+//! assert!((pair.distance(&apart).distance - 0.5).abs() < 1e-12);
+//! # Ok::<(), qdist::mesh::MeshError>(())
+//! ```
+//!
+//! # Parts
+//!
+//! ```text
+//! proximity                   two meshes: solid test, distance, contacts, motion along a screw
+//!  surface                    a mesh: vertices, triangles, and all that is derived from them once
+//!   check                     what is wrong with it, and whether it bounds a solid
+//!   bvh                       a tree of boxes over the triangles
+//!    topology                 edges, neighbours, components, convexity
+//! ```
+//!
+//! # Solids and soups
+//!
+//! A mesh is taken as it is; nothing is repaired. If its triangles close up with a consistent winding, outward, it bounds a solid and
+//! is treated as one: what lies inside it collides with it. Otherwise it is a *polygon soup*, a surface without an inside, and queries see the
+//! surface only. [`Report`] says which, and what is wrong where.
+
+mod bvh;
+pub mod check;
+pub mod proximity;
+mod surface;
+pub mod topology;
+
+pub use check::Report;
+pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};
+pub use surface::{MAX_COORDINATE, Mesh, MeshError};
+pub use topology::{Edge, EdgeKind, Feature, Topology};

@@ -1,0 +1,54 @@
+//! The point of a mesh that is nearest to a point.
+
+use super::super::Mesh;
+use super::super::bvh::{Below, Node};
+use super::candidate::feature;
+use super::triangle::nearest_on_triangle;
+use crate::mesh::Feature;
+use nalgebra::Point3;
+
+/// A point of a mesh, in the mesh's frame.
+pub(super) struct Projection {
+    pub point: Point3<f64>,
+    pub feature: Feature,
+    pub triangle: u32,
+    pub squared: f64,
+}
+
+/// The squared distance of a point from a box.
+fn bound(node: &Node, p: &Point3<f64>) -> f64 {
+    ((p.coords - node.centre).abs() - node.half).map(|x| x.max(0.0)).norm_squared()
+}
+
+/// The nearest point of the mesh if its squared distance is less than `below`, by descent into the nearer box first.
+pub(super) fn project(
+    mesh: &Mesh,
+    p: &Point3<f64>,
+    below: f64,
+    stack: &mut Vec<(f64, (u32, u32))>,
+) -> Option<Projection> {
+    let mut best = below;
+    let mut found = None;
+    stack.clear();
+    stack.push((0.0, (0, 0)));
+    while let Some((least, (i, _))) = stack.pop() {
+        if least >= best {
+            continue;
+        }
+        match mesh.bvh().node(i).below() {
+            Below::Children(both) => {
+                let [x, y] = both.map(|child| (bound(mesh.bvh().node(child), p), (child, 0)));
+                stack.extend(if x.0 < y.0 { [y, x] } else { [x, y] });
+            }
+            Below::Triangle(triangle) => {
+                let (point, place) = nearest_on_triangle(p, mesh.corners(triangle));
+                let squared = (point - p).norm_squared();
+                if squared < best {
+                    best = squared;
+                    found = Some(Projection { point, feature: feature(mesh, triangle, place), triangle, squared });
+                }
+            }
+        }
+    }
+    found
+}

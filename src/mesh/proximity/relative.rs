@@ -1,0 +1,165 @@
+//! The relative pose of a pair, and the walk over pairs of boxes.
+//!
+//! All boxes of A share one rotation relative to all boxes of B, so R, |R| and the error bound of a query are computed
+//! once. Two boxes with centres at distance d (in either frame) and half extents a, b leave between them, per axis, the gap
+//!
+//! ```text
+//! frame of B:  |d| - b - |R| a          frame of A:  |R^T d| - a - |R|^T b
+//! ```
+//!
+//! and the length of the positive gaps of one frame is a lower bound of the distance.
+
+use super::super::Mesh;
+use super::super::bvh::{Below, Node};
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use std::ops::ControlFlow;
+
+/// A pose that queries accept: finite, with a translation below 1e60.
+pub(super) fn is_usable(pose: &Isometry3<f64>) -> bool {
+    let q = pose.rotation.quaternion();
+    q.norm_squared() > 0.5
+        && q.norm_squared() < 2.0
+        && pose.translation.vector.iter().all(|x| x.abs() <= super::super::MAX_COORDINATE)
+}
+
+/// One query's relative pose.
+#[derive(Clone, Debug)]
+pub(super) struct Relative {
+    rotation: Matrix3<f64>,
+    absolute: Matrix3<f64>,
+    translation: Vector3<f64>,
+    /// Bound of the rounding error of a point of A in the frame of B, together with that of a point of B.
+    pub doubt: f64,
+}
+
+impl Relative {
+    pub fn new(pose: &Isometry3<f64>, a: &Mesh, b: &Mesh) -> Relative {
+        let rotation = *pose.rotation.to_rotation_matrix().matrix();
+        let translation = pose.translation.vector;
+        let doubt = 16.0 * f64::EPSILON * (3.0 * a.scale() + translation.amax() + b.scale());
+        Relative { absolute: rotation.abs(), rotation, translation, doubt }
+    }
+
+    /// A point of A in the frame of B.
+    #[inline]
+    pub fn place(&self, p: &Point3<f64>) -> Point3<f64> {
+        (self.rotation * p.coords + self.translation).into()
+    }
+
+    /// A triangle of A in the frame of B.
+    #[inline]
+    pub fn place_all(&self, triangle: &[Point3<f64>; 3]) -> [Point3<f64>; 3] {
+        triangle.map(|p| self.place(&p))
+    }
+
+    /// A point of B in the frame of A.
+    pub fn place_back(&self, p: &Point3<f64>) -> Point3<f64> {
+        self.rotation.tr_mul(&(p.coords - self.translation)).into()
+    }
+
+    /// A direction of A in the frame of B.
+    pub fn turn(&self, u: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation * u
+    }
+
+    /// A direction of B in the frame of A.
+    pub fn turn_back(&self, u: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation.tr_mul(u)
+    }
+
+    /// A lower bound of the squared distance of two boxes, or any number above `enough` when it is larger than that.
+    #[inline]
+    pub fn bound(&self, a: &Node, b: &Node, enough: f64) -> f64 {
+        let d = self.rotation * a.centre + self.translation - b.centre;
+        let gap = |x: Vector3<f64>| {
+            let x = Vector3::new((x.x - self.doubt).max(0.0), (x.y - self.doubt).max(0.0), (x.z - self.doubt).max(0.0));
+            x.norm_squared()
+        };
+        let in_b = gap(d.abs() - b.half - self.absolute * a.half);
+        if in_b > enough {
+            return in_b;
+        }
+        let d_a = self.rotation.tr_mul(&d);
+        let in_a = gap(d_a.abs() - a.half - self.absolute.tr_mul(&b.half));
+        // Along d itself, which no axis of the boxes may be near to: (|d|^2 - |d|.b - |R^T d|.a) / |d|.
+        let size = d.norm_squared();
+        let along = size * (1.0 - 16.0 * f64::EPSILON)
+            - d.abs().dot(&b.half.add_scalar(self.doubt))
+            - d_a.abs().dot(&a.half.add_scalar(self.doubt));
+        let along = if along > 0.0 { along * along / size } else { 0.0 };
+        in_b.max(in_a).max(along)
+    }
+
+    /// Whether two boxes are farther apart than the margin, by the axes of both, the gaps of one frame together, and the
+    /// products of axes. The cheapest first.
+    #[inline]
+    fn boxes_apart(&self, a: &Node, b: &Node, margin: f64) -> bool {
+        let (r, s) = (&self.rotation, &self.absolute);
+        let d = r * a.centre + self.translation - b.centre;
+        let least = margin + self.doubt;
+        let in_b = d.abs() - b.half - s * a.half;
+        if in_b.max() > least {
+            return true;
+        }
+        let in_a = r.tr_mul(&d).abs() - a.half - s.tr_mul(&b.half);
+        if in_a.max() > least {
+            return true;
+        }
+        let squared = |x: Vector3<f64>| x.map(|x| (x - self.doubt).max(0.0)).norm_squared();
+        if margin > 0.0 && squared(in_b).max(squared(in_a)) > margin * margin {
+            return true;
+        }
+        for i in 0..3 {
+            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
+            for j in 0..3 {
+                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
+                // The axis e_i x R e_j = R[i1, j] e_i2 - R[i2, j] e_i1 is no longer than 1, so its gap is no larger than the distance.
+                let between = (d[i2] * r[(i1, j)] - d[i1] * r[(i2, j)]).abs();
+                let in_b = b.half[i1] * s[(i2, j)] + b.half[i2] * s[(i1, j)];
+                let in_a = a.half[j1] * s[(i, j2)] + a.half[j2] * s[(i, j1)];
+                if between - in_b - in_a > margin + 2.0 * self.doubt {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+/// The children of the larger box of a pair, each with the other box.
+#[inline]
+pub(super) fn open(a: &Mesh, b: &Mesh, pair: (u32, u32)) -> Result<[(u32, u32); 2], (u32, u32)> {
+    let (i, j) = pair;
+    let (node_a, node_b) = (a.bvh().node(i), b.bvh().node(j));
+    let a_first = !node_a.is_leaf() && (node_b.is_leaf() || node_a.size >= node_b.size);
+    match (node_a.below(), node_b.below()) {
+        (Below::Children([x, y]), _) if a_first => Ok([(x, j), (y, j)]),
+        (_, Below::Children([x, y])) => Ok([(i, x), (i, y)]),
+        (Below::Triangle(s), Below::Triangle(t)) => Err((s, t)),
+        (Below::Children([x, y]), _) => Ok([(x, j), (y, j)]),
+    }
+}
+
+/// Visits all pairs of triangles whose boxes may be nearer than the margin, until the visitor breaks.
+pub(super) fn walk<B>(
+    a: &Mesh,
+    b: &Mesh,
+    relative: &Relative,
+    margin: f64,
+    stack: &mut Vec<(u32, u32)>,
+    mut visit: impl FnMut(u32, u32) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    stack.clear();
+    stack.push((0, 0));
+    while let Some(pair) = stack.pop() {
+        let (node_a, node_b) = (a.bvh().node(pair.0), b.bvh().node(pair.1));
+        if relative.boxes_apart(node_a, node_b, margin) {
+            continue;
+        }
+        match open(a, b, pair) {
+            Ok(both) => stack.extend(both),
+            Err((s, t)) => visit(s, t)?,
+        }
+    }
+    ControlFlow::Continue(())
+}

@@ -1,0 +1,158 @@
+//! Distances: against all pairs of triangles, closed forms, and in all frames and sizes.
+#![cfg(feature = "mesh")]
+
+mod common;
+mod mesh_common;
+
+use common::dice::Dice;
+use common::shared;
+use mesh_common::*;
+use nalgebra::{Isometry3, Vector3};
+use qdist::mesh::{Feature, Mesh, Pair};
+
+/// Whether the point is on the feature.
+fn is_on(mesh: &Mesh, feature: Feature, p: &Vector3<f64>, tolerance: f64) -> bool {
+    let at = |v: u32| mesh.vertices()[v as usize].coords;
+    let off = match feature {
+        Feature::Vertex(v) => (p - at(v)).norm(),
+        Feature::Edge(e) => {
+            let [x, y] = mesh.topology().edges()[e as usize].vertices;
+            point_segment(p, &at(x), &at(y))
+        }
+        Feature::Face(f) => point_triangle(p, &mesh.triangles()[f as usize].map(at)),
+    };
+    off <= tolerance
+}
+
+fn check(a: &Mesh, b: &Mesh, seed: u64, count: usize, reach: f64) {
+    let mut dice = Dice::new(seed);
+    let mut pair = Pair::new(a, b);
+    let mut apart = 0;
+    for _ in 0..count {
+        let pose = random_pose(&mut dice, reach);
+        let expected = brute_distance(a, b, &pose);
+        let found = pair.distance(&pose);
+        let tolerance = 1e-12 * (a.diagonal() + b.diagonal() + reach);
+        assert!((found.distance - expected).abs() <= tolerance, "{} for {expected}", found.distance);
+        assert_eq!(pair.surfaces_meet(&pose), expected == 0.0);
+        assert!(is_on(a, found.feature_a, &pose.inverse_transform_point(&found.on_a).coords, tolerance));
+        assert!(is_on(b, found.feature_b, &found.on_b.coords, tolerance));
+        if expected > 0.0 {
+            assert!(((found.on_a - found.on_b).norm() - expected).abs() <= tolerance);
+            assert!(!pair.distance_greater_than(&pose, expected * (1.0 + 1e-9) + tolerance));
+            assert!(pair.distance_greater_than(&pose, (expected * (1.0 - 1e-9) - 20.0 * tolerance).max(0.0)));
+            apart += 1;
+        } else {
+            assert!(!pair.distance_greater_than(&pose, 0.0));
+        }
+    }
+    assert!(apart > 0);
+}
+
+#[test]
+fn agrees_with_all_pairs() {
+    let (l, knot, ring) = (l_shape().mesh(), torus_knot(60, 8, 0.2).mesh(), torus(24, 10, 1.0, 0.3).mesh());
+    check(&l, &knot, 1, 40, 3.0);
+    check(&cuboid([0.3, 0.5, 0.1]).mesh(), &ring, 2, 100, 2.0);
+    check(&tetrahedron().mesh(), &l, 3, 300, 2.5);
+    check(&icosphere(2).mesh(), &ring, 4, 40, 3.0);
+    check(&knot, &ring, 5, 15, 3.0);
+    // A soup: no inside, two-sided faces, open edges.
+    check(&l_shape().without(4).mesh(), &torus(24, 10, 1.0, 0.3).without(7).mesh(), 6, 100, 2.5);
+}
+
+#[test]
+fn soups_of_the_shared_data() {
+    let Some(folder) = shared("mesh_distance", "meshes/real") else { return };
+    let (rob, env) = (read_obj(&folder.join("rob.obj")).mesh(), read_obj(&folder.join("env.obj")).mesh());
+    check(&rob, &env, 1, 6, 0.6 * env.diagonal());
+}
+
+#[test]
+fn boxes() {
+    let mut dice = Dice::new(5);
+    for scale in [1e-6, 1.0, 1e6] {
+        let h = Vector3::new(0.5, 0.3, 0.2) * scale;
+        let (a, b) = (cuboid(h.into()).mesh(), cuboid((2.0 * h).into()).mesh());
+        let mut pair = Pair::new(&a, &b);
+        for _ in 0..200 {
+            let t = Vector3::from_fn(|i, _| 3.0 * h[i] * dice.range(-3.0, 3.0));
+            let gap = (t.abs() - 3.0 * h).map(|x| x.max(0.0));
+            let found = pair.distance(&Isometry3::translation(t.x, t.y, t.z));
+            if gap.norm() > 0.0 {
+                assert!((found.distance - gap.norm()).abs() <= 1e-14 * scale, "{t:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn balls() {
+    // Inscribed polyhedra with edges shorter than 0.16: at most 1 - cos(0.1) too far apart, each.
+    let ball = icosphere(3).mesh();
+    let mut dice = Dice::new(6);
+    let mut pair = Pair::new(&ball, &ball);
+    for _ in 0..50 {
+        let pose = random_pose(&mut dice, 4.0);
+        let exact = pose.translation.vector.norm() - 2.0;
+        if exact > 0.0 {
+            let found = pair.distance(&pose).distance;
+            assert!(exact - 1e-12 <= found && found <= exact + 0.011, "{found} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_same_in_all_frames_and_sizes() {
+    let (a, b) = (l_shape(), torus(20, 8, 1.0, 0.35));
+    let (mesh_a, mesh_b) = (a.mesh(), b.mesh());
+    let mut dice = Dice::new(11);
+    for round in 0..60 {
+        let pose = random_pose(&mut dice, 3.0);
+        let expected = Pair::new(&mesh_a, &mesh_b).distance(&pose).distance;
+        let (frame_a, frame_b, s) = (random_pose(&mut dice, 3.0), random_pose(&mut dice, 3.0), dice.decade(-6.0, 6.0));
+        let scaled = |mut pose: Isometry3<f64>| {
+            pose.translation.vector *= s;
+            pose
+        };
+        let (other_a, other_b) = (a.placed(&scaled(frame_a), s).mesh(), b.placed(&scaled(frame_b), s).mesh());
+        let other_pose = scaled(frame_b * pose * frame_a.inverse());
+        let there = Pair::new(&other_a, &other_b).distance(&other_pose).distance;
+        let back = Pair::new(&other_b, &other_a).distance(&other_pose.inverse()).distance;
+        assert!((there - s * expected).abs() < 1e-12 * s && (back - s * expected).abs() < 1e-12 * s, "round {round}");
+    }
+}
+
+#[test]
+fn garbage_neither_panics_nor_hangs() {
+    let mut dice = Dice::new(13);
+    for _ in 0..1500 {
+        let n = 1 + dice.below(8);
+        let m = 1 + dice.below(12);
+        let mut garbage = || {
+            let scale = dice.decade(-30.0, 30.0);
+            let flat = dice.chance(0.3);
+            let vertices: Vec<[f64; 3]> = (0..n)
+                .map(|_| [0, 1, 2].map(|i| if flat && i == 2 { 0.0 } else { (4.0 * dice.signed()).round() * scale }))
+                .collect();
+            let triangles: Vec<[u32; 3]> = (0..m).map(|_| [0; 3].map(|_| dice.below(n) as u32)).collect();
+            Mesh::new(&vertices, &triangles).unwrap()
+        };
+        let (a, b) = (garbage(), garbage());
+        let reach = dice.decade(-30.0, 30.0);
+        let pose = random_pose(&mut dice, reach);
+        let mut pair = Pair::new(&a, &b);
+        let mut contacts = Vec::new();
+        let collides = pair.collides(&pose);
+        let found = pair.distance(&pose);
+        assert!(found.distance >= 0.0 && found.distance.is_finite());
+        assert!(collides || found.distance > 0.0, "free, and at distance 0");
+        pair.contacts(&pose, reach, &mut contacts);
+        for c in &contacts {
+            assert!(c.gap <= reach && (c.normal.norm() - 1.0).abs() < 1e-9);
+        }
+        let end = random_pose(&mut dice, reach);
+        let impact = pair.advance(&qdist::mesh::Screw::new(&pose, &end), 0.0, 1e-3 * reach, 50);
+        assert!((0.0..=1.0).contains(&impact.s));
+    }
+}
