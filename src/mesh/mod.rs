@@ -1,0 +1,6 @@
+//! Generalized penetration depth of triangle meshes.
+
+pub mod hull;
+pub mod mass;
+pub mod metric;
+pub mod optimize;
