@@ -8,10 +8,10 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, SupportedConeT,
 };
 use common::dice::Dice;
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Isometry3, Matrix3, Matrix6, Point3, UnitQuaternion, Vector3, Vector6};
 use qdist::mesh::mass::MassProperties;
-use qdist::mesh::metric::{Disp, Metric, Sigma};
-use qdist::mesh::optimize::{Contact, Step, StepEnd, StepError, StepMemory, StepOptions};
+use qdist::mesh::metric::{BodyFrame, Disp, Metric, Sigma};
+use qdist::mesh::optimize::{Contact, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions, Twist};
 
 fn direction(dice: &mut Dice) -> Vector3<f64> {
     Vector3::from_fn(|_, _| dice.normal()).normalize()
@@ -175,7 +175,7 @@ fn violation(problem: &Problem, step: &Step) -> f64 {
 fn displacement_steps_agree_with_a_cone_solver() {
     let mut dice = Dice::new(11);
     let mut memory = StepMemory::new(100);
-    let (mut programs, mut runs, mut most) = (0, 0, 0);
+    let (mut programs, mut runs) = (0, 0);
     for run in 0..150 {
         let scale = dice.decade(-6.0, 6.0);
         let corners = dice.pick(&[4, 8, 20, 60]);
@@ -199,7 +199,6 @@ fn displacement_steps_agree_with_a_cone_solver() {
         let unit = Disp::new(&p.vertices).unwrap();
         let oracle = least_displacement(&p, &unit);
         if !oracle.solved {
-            println!("run {run}: the oracle failed");
             continue;
         }
         let (value, lower) = (step.value / scale, step.lower / scale);
@@ -207,14 +206,262 @@ fn displacement_steps_agree_with_a_cone_solver() {
             "run {run}: {corners} corners, {contacts} contacts, {value} >= {} >= {lower}, {:?} {}",
             oracle.value, step.end, step.programs
         );
-        println!("{tell}");
         let slack = 1e-8;
+        let left = violation(&p, &Step { twist: unit_twist(&step, scale), ..step });
+        assert!(left < 1e-10 && step.violation == 0.0, "{tell}: {left}");
+        let again = moved(&p, &Step { twist: unit_twist(&step, scale), ..step });
+        assert!((again - value).abs() < 1e-10, "{tell}: {again}");
         assert!(value >= oracle.value - slack && lower <= oracle.value + slack, "{tell}");
         assert!(step.end == StepEnd::Optimal && value <= oracle.value * (1.0 + 2e-6) + slack, "{tell}");
         programs += step.programs;
-        most = most.max(step.programs);
         runs += 1;
     }
-    println!("{runs} runs, {programs} programs, at most {most}");
     assert!(runs > 140);
+    assert!(programs < 8 * runs, "{programs} programs in {runs} steps");
+}
+
+/// The twist at scale 1.
+fn unit_twist(step: &Step, scale: f64) -> Twist {
+    Twist { linear: step.twist.linear / scale, angular: step.twist.angular, about: step.twist.about / scale }
+}
+
+fn solid(dice: &mut Dice, scale: f64) -> Sigma {
+    let k = Vector3::from_fn(|_, _| dice.range(0.05, 1.0)).normalize() * scale * scale;
+    let gyration = Matrix3::from_diagonal(&Vector3::new(k.y + k.z, k.x + k.z, k.x + k.y));
+    let turn = pose(dice, 1.0).rotation.to_rotation_matrix().into_inner();
+    let centre = Point3::from(Vector3::from_fn(|_, _| dice.signed()) * scale);
+    Sigma::new(&MassProperties {
+        volume: scale.powi(3),
+        centre,
+        inertia: turn * gyration * turn.transpose() * scale.powi(3),
+    })
+}
+
+/// The twist as the variables of the rows.
+fn variables(step: &Step, radius: f64) -> Vector6<f64> {
+    let (v, w) = (step.twist.linear, step.twist.angular * radius);
+    Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z)
+}
+
+/// The least violation of the contacts within the walls, and the least of the quadratic model, in the world's axes.
+fn quadratic_oracles(problem: &Problem, metric: &dyn Metric) -> (Oracle, Oracle) {
+    let (contacts, walls) = rows(problem, metric);
+    let table = |extra: f64| {
+        let row = |(n, _): &(Vector6<f64>, f64), e: f64| n.iter().map(|x| -x).chain([-e]).collect::<Vec<f64>>();
+        let a: Vec<_> = contacts.iter().map(|c| row(c, extra)).chain(walls.iter().map(|c| row(c, 0.0))).collect();
+        let b: Vec<_> = contacts.iter().chain(&walls).map(|c| -c.1).collect();
+        (a, b)
+    };
+    let (mut a, mut b) = table(1.0);
+    a.push(vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+    b.push(0.0);
+    let cones = [NonnegativeConeT(a.len())];
+    let relaxed = clarabel(&vec![vec![0.0; 7]; 7], &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &a, &b, &cones);
+
+    let (a, b) = table(0.0);
+    let model = metric.model(&problem.from, &problem.at);
+    // The model's variables are in the body's axes.
+    let axes = problem.at.rotation.to_rotation_matrix().into_inner() * metric.frame().axes;
+    let mut turn = Matrix6::zeros();
+    for k in [0, 3] {
+        turn.fixed_view_mut::<3, 3>(k, k).copy_from(&axes);
+    }
+    let (h, g) = (turn * model.hessian * turn.transpose(), turn * model.gradient);
+    let p: Vec<Vec<f64>> =
+        (0..7).map(|i| (0..7).map(|j| if i < 6 && j < 6 { 2.0 * h[(i, j)] } else { 0.0 }).collect()).collect();
+    let q: Vec<f64> = g.iter().map(|x| 2.0 * x).chain([0.0]).collect();
+    let mut least = clarabel(&p, &q, &a, &b, &[NonnegativeConeT(a.len())]);
+    least.value = (least.value + model.value).max(0.0).sqrt();
+    (relaxed, least)
+}
+
+#[test]
+fn quadratic_steps_agree_with_an_interior_point_solver() {
+    let mut dice = Dice::new(12);
+    let mut memory = StepMemory::new(300);
+    let mut contradictions = 0;
+    for run in 0..300 {
+        let contacts = dice.pick(&[0, 1, 3, 10, 30, 100, 300]);
+        let trust = dice.pick(&[f64::INFINITY, 0.1, 0.02]);
+        let mut p = problem(&mut dice, 20, contacts, 1.0, trust);
+        if run % 3 == 0 {
+            // Penetrating: deep, and hardly.
+            let depth = dice.decade(-6.0, -0.5);
+            p.contacts.iter_mut().for_each(|c| c.gap -= depth);
+        }
+        let sigma = solid(&mut dice, 1.0);
+        let step = sigma.step(&p.from, &p.at, &p.contacts, &p.options, &mut memory).unwrap();
+        let (relaxed, least) = quadratic_oracles(&p, &sigma);
+        let left = violation(&p, &step);
+        let tell = format!("run {run}: {contacts} contacts, {step:?}, {} {}, left {left}", relaxed.value, least.value);
+        assert!(variables(&step, sigma.frame().radius).iter().all(|x| x.abs() <= 2.0 * p.options.trust), "{tell}");
+        match step.end {
+            StepEnd::Optimal => {
+                assert!(left < 1e-9, "{tell}");
+                if least.solved {
+                    assert!((step.value - least.value).abs() < 1e-6, "{tell}");
+                }
+                assert!(!least.infeasible || relaxed.value < 1e-8, "{tell}");
+            }
+            StepEnd::Infeasible => {
+                contradictions += 1;
+                assert!(relaxed.solved && relaxed.value > 1e-10, "{tell}");
+                assert!((left - step.violation).abs() < 1e-9 && left < relaxed.value * (1.0 + 1e-4) + 1e-7, "{tell}");
+            }
+            StepEnd::Limit => panic!("{tell}"),
+        }
+    }
+    assert!(contradictions > 20, "{contradictions}");
+}
+
+/// A metric with a model and nothing else.
+struct Plain(BodyFrame);
+
+impl Metric for Plain {
+    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        (to * self.0.centre - from * self.0.centre).norm()
+    }
+
+    fn frame(&self) -> &BodyFrame {
+        &self.0
+    }
+
+    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
+        let e = at.rotation.inverse() * (at * self.0.centre - from * self.0.centre);
+        let mut hessian = Matrix6::zeros();
+        hessian.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
+        Quadratic { value: e.norm_squared(), gradient: Vector6::new(e.x, e.y, e.z, 0.0, 0.0, 0.0), hessian }
+    }
+}
+
+#[test]
+fn a_metric_of_ones_own_that_does_not_see_rotations() {
+    let metric = Plain(BodyFrame { centre: Point3::origin(), axes: Matrix3::identity(), radius: 1.0 });
+    let mut memory = StepMemory::new(4);
+    let (from, at) = (Isometry3::identity(), Isometry3::translation(0.0, 0.0, 0.5));
+    let options = StepOptions { trust: 0.7, ..StepOptions::default() };
+    let free = metric.step(&from, &at, &[], &options, &mut memory).unwrap();
+    assert!(free.value < 1e-12 && free.end == StepEnd::Optimal);
+    // A contact away from the centre: turning about it is free, as far as the trust region goes.
+    let contact = Contact { point: Point3::new(1.0, 0.0, 0.5), normal: Vector3::z(), gap: 0.0 };
+    let step = metric.step(&from, &at, &[contact], &options, &mut memory).unwrap();
+    assert!(step.value < 1e-6 && violation_of(&contact, &step) < 1e-9, "{step:?}");
+    let centred = Contact { point: Point3::new(0.0, 0.0, 0.5), ..contact };
+    let step = metric.step(&from, &at, &[centred], &options, &mut memory).unwrap();
+    assert!((step.value - 0.5).abs() < 1e-12);
+}
+
+fn violation_of(c: &Contact, step: &Step) -> f64 {
+    -c.gap - c.normal.dot(&step.twist.velocity(&c.point))
+}
+
+#[test]
+fn pushing_a_penetrating_pose_out() {
+    // A unit cube 0.1 deep in the floor, and in a wall: out along both normals, without turning.
+    let corners: Vec<Point3<f64>> =
+        (0..8).map(|k| Point3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2))).collect();
+    let contacts: Vec<Contact> = corners
+        .iter()
+        .flat_map(|&point| {
+            [(Vector3::z(), point.z), (Vector3::x(), point.x)]
+                .into_iter()
+                .filter(|c| c.1 == 0.0)
+                .map(move |(normal, _)| Contact { point, normal, gap: -0.1 })
+        })
+        .collect();
+    let disp = Disp::new(&corners).unwrap();
+    let cube = MassProperties {
+        volume: 1.0,
+        centre: Point3::new(0.5, 0.5, 0.5),
+        inertia: Matrix3::from_diagonal_element(1.0 / 6.0),
+    };
+    let here = Isometry3::identity();
+    let mut memory = StepMemory::new(8);
+    for metric in [&disp as &dyn Metric, &Sigma::new(&cube)] {
+        let step = metric.step(&here, &here, &contacts, &StepOptions::default(), &mut memory).unwrap();
+        assert!(step.end == StepEnd::Optimal && (step.value - 0.02f64.sqrt()).abs() < 1e-6, "{step:?}");
+        assert!((step.twist.linear - Vector3::new(0.1, 0.0, 0.1)).norm() < 1e-6 && step.twist.angular.norm() < 1e-6);
+        let out = step.twist.applied(&here);
+        assert!((metric.distance(&here, &out) - step.value).abs() < 1e-6);
+
+        // A ceiling 0.05 too low: half of it is left above and below, and nothing else gets worse.
+        let ceiling =
+            corners.iter().filter(|p| p.z == 1.0).map(|&point| Contact { point, normal: -Vector3::z(), gap: 0.05 });
+        let both: Vec<Contact> = contacts.iter().copied().chain(ceiling).collect();
+        let mut memory = StepMemory::new(both.len());
+        let step = metric.step(&here, &here, &both, &StepOptions::default(), &mut memory).unwrap();
+        assert!(step.end == StepEnd::Infeasible && (step.violation - 0.025).abs() < 1e-6, "{step:?}");
+        assert!(step.twist.linear.x > 0.07);
+
+        // Deeper than the trust region: as far as it goes.
+        let options = StepOptions { trust: 0.04, ..StepOptions::default() };
+        let step = metric.step(&here, &here, &contacts, &options, &mut memory).unwrap();
+        assert!(step.end == StepEnd::Infeasible && step.violation < 0.061, "{step:?}");
+    }
+}
+
+#[test]
+fn a_pose_that_is_reached_is_left_alone() {
+    let mut dice = Dice::new(13);
+    let mut memory = StepMemory::new(30);
+    for _ in 0..100 {
+        let p = problem(&mut dice, 20, 30, 1.0, 0.1);
+        let disp = Disp::new(&p.vertices).unwrap();
+        let sigma = solid(&mut dice, 1.0);
+        for metric in [&disp as &dyn Metric, &sigma] {
+            let step = metric.step(&p.at, &p.at, &p.contacts, &p.options, &mut memory).unwrap();
+            assert!(step.end == StepEnd::Optimal && step.value < 1e-14, "{step:?}");
+            let away = near(&mut dice, &p.at, 1e-4, 1e-4);
+            let step = metric.step(&p.at, &away, &[], &p.options, &mut memory).unwrap();
+            assert!(step.end == StepEnd::Optimal && step.value < 1e-7, "{step:?}");
+            assert!(metric.distance(&p.at, &step.twist.applied(&away)) < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    let mut dice = Dice::new(14);
+    let p = problem(&mut dice, 20, 3, 1.0, 0.1);
+    let disp = Disp::new(&p.vertices).unwrap();
+    let sigma = solid(&mut dice, 1.0);
+    let mut memory = StepMemory::new(3);
+    for metric in [&disp as &dyn Metric, &sigma] {
+        let mut step = |at: &Isometry3<f64>, contacts: &[Contact], options: &StepOptions| {
+            metric.step(&p.from, at, contacts, options, &mut memory)
+        };
+        let more = [p.contacts.clone(), p.contacts.clone()].concat();
+        assert_eq!(step(&p.at, &more, &p.options), Err(StepError::Capacity));
+        let mut bad = p.contacts.clone();
+        bad[2].normal.y = f64::NAN;
+        assert_eq!(step(&p.at, &bad, &p.options), Err(StepError::Contact { index: 2 }));
+        bad[1].gap = f64::INFINITY;
+        assert_eq!(step(&p.at, &bad, &p.options), Err(StepError::Contact { index: 1 }));
+        assert_eq!(step(&Isometry3::translation(0.0, f64::NAN, 0.0), &[], &p.options), Err(StepError::Pose));
+        for trust in [0.0, -1.0, f64::NAN] {
+            assert_eq!(step(&p.at, &[], &StepOptions { trust, ..p.options }), Err(StepError::Options));
+        }
+        assert_eq!(step(&p.at, &[], &StepOptions { tolerance: 0.0, ..p.options }), Err(StepError::Options));
+        // A contact without a normal says nothing, or cannot be met.
+        let none = Contact { normal: Vector3::zeros(), ..p.contacts[0] };
+        assert_eq!(step(&p.at, &[Contact { gap: 0.0, ..none }], &p.options).unwrap().end, StepEnd::Optimal);
+        let never = step(&p.at, &[Contact { gap: -0.1, ..none }], &p.options).unwrap();
+        assert!(never.end == StepEnd::Infeasible && (never.violation - 0.1).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn twists_are_rigid_motions() {
+    let mut dice = Dice::new(15);
+    for _ in 0..50 {
+        let at = pose(&mut dice, 1.0);
+        let about = Point3::from(direction(&mut dice));
+        let twist = Twist { linear: direction(&mut dice), angular: direction(&mut dice), about };
+        let (x, y) = (Point3::from(direction(&mut dice)), Point3::from(direction(&mut dice)));
+        let after = twist.applied(&at);
+        assert!(((after * x - after * y).norm() - (x - y).norm()).abs() < 1e-14);
+        let h = 1e-6;
+        let moved = |h: f64| twist.scaled(h).applied(&at) * x;
+        assert!(((moved(h) - moved(-h)) / (2.0 * h) - twist.velocity(&(at * x))).norm() < 1e-9);
+    }
 }

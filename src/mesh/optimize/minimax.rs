@@ -28,8 +28,8 @@
 //! which needs no trust region and closes as fast as d vanishes.
 
 use super::Linear;
-use super::project::{End, Projected, Row, WIDTH, project};
-use super::quadratic::{EXTRA, Factor, walls};
+use super::project::{End, LAST, Projected, Row, project};
+use super::quadratic::{Factor, walls};
 use heapless::Vec;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
@@ -165,7 +165,7 @@ where
         for p in &members {
             let v = here.at(&p.r);
             let mut normal = factor.forward(&wrench(&p.r, &(v * (-DAMPING / size)), radius));
-            normal[EXTRA] = 1.0;
+            normal[LAST] = 1.0;
             rows.push(Row::new(normal, DAMPING * (v.norm_squared() - square) / (2.0 * size) + size / DAMPING));
         }
         let projected = project(rows, 7);
@@ -274,5 +274,3 @@ fn least_of_parabolas(members: &[Member], here: &Field, d: &Vector6<f64>, radius
     }
     if low > 0.0 { low } else { high }
 }
-
-const _: () = assert!(WIDTH > EXTRA);

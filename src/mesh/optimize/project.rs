@@ -17,8 +17,12 @@ use heapless::Vec;
 
 /// Room for seven dimensions; eight numbers go through vector registers without a rest.
 pub const WIDTH: usize = 8;
+/// The coordinate after the six of the motion.
+pub const LAST: usize = 6;
 /// See the module's head.
 const DEPENDENT: f64 = 1e-11;
+/// Of the point's last coordinate, for rows that do not have it: the basis mixes coordinates.
+const ROUNDING: f64 = 1e-14;
 /// Steps at most; some twenty are usual.
 const MAX_STEPS: usize = 300;
 
@@ -141,14 +145,17 @@ impl State {
 
     /// The row that is most violated, if any is beyond rounding.
     fn most_violated(&self, rows: &[Row]) -> Option<usize> {
-        let size = dot(&self.point, &self.point).sqrt();
+        // The last coordinate, large in one program, counts for the rows that have it.
+        let (last, mut others) = (self.point[LAST].abs(), self.point);
+        others[LAST] = 0.0;
+        let size = dot(&others, &others).sqrt();
         let active = &self.rows[..self.count];
         let mut most = (0.0, None);
         for (i, row) in rows.iter().enumerate() {
             let violation = row.violation(&self.point);
-            let beyond = violation > most.0 && violation > DEPENDENT * (size + row.offset.abs());
+            let sizes = || size + last * row.normal[LAST].abs() + row.offset.abs() + ROUNDING / DEPENDENT * last;
             // An active row is met, as well as rounding lets it.
-            if beyond && !active.contains(&i) {
+            if violation > most.0 && violation > DEPENDENT * sizes() && !active.contains(&i) {
                 most = (violation, Some(i));
             }
         }

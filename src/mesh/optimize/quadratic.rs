@@ -9,7 +9,7 @@
 //! or |x|^2 + z^2 with e = sqrt(d) z. That is the least of the largest violation to about d, and among the motions that attain
 //! it one of the best. The trust box does not yield.
 
-use super::project::{End, Projected, Row, WIDTH, Wide, project};
+use super::project::{End, LAST, Projected, Row, WIDTH, Wide, project};
 use super::{Linear, Quadratic};
 use nalgebra::{Matrix6, Vector6};
 
@@ -17,8 +17,6 @@ use nalgebra::{Matrix6, Vector6};
 pub const TRUST_ROWS: usize = 12;
 /// sqrt(d).
 const YIELD: f64 = 1e-5;
-/// The coordinate after the six of the motion.
-pub const EXTRA: usize = 6;
 
 /// A Cholesky factor.
 pub struct Factor {
@@ -120,7 +118,7 @@ fn fill(rows: &mut Vec<Row>, factor: &Factor, shift: &Wide, contacts: &[Linear],
     let mut add = |c: &Linear, extra: f64| {
         let mut normal = factor.forward(&c.normal);
         let offset = c.offset + super::project::dot(&normal, shift);
-        normal[EXTRA] = extra;
+        normal[LAST] = extra;
         rows.push(Row::new(normal, offset));
     };
     contacts.iter().for_each(|c| add(c, yields));
