@@ -216,7 +216,7 @@ impl Metric for Disp {
         memory: &mut StepMemory,
     ) -> Result<Step, StepError> {
         prepare(&self.frame, [from, at], contacts, options, memory)?;
-        let mut step = quadratic_step(&self.model(from, at), options, memory)?;
+        let mut step = quadratic_step(&self.frame, &self.model(from, at), options, memory)?;
         let field = self.field(from, at);
         if step.end != StepEnd::Optimal {
             step.value = self.farthest(&field.moved(&step.y, self.frame.radius)).1.sqrt();

@@ -74,6 +74,9 @@ impl BodyFrame {
     }
 }
 
+/// Contacts that contradict each other by less than this fraction of the body's radius hold: positions are not known better.
+const SLACK: f64 = 1e-10;
+
 /// How far a body is from a pose, and which way back.
 pub trait Metric {
     /// The distance between two poses, a length: not negative, 0 between equal poses, proportional to the body's scale.
@@ -106,7 +109,7 @@ pub trait Metric {
     ) -> Result<Step, StepError> {
         prepare(self.frame(), [from, at], contacts, options, memory)?;
         let model = self.model(from, at);
-        Ok(quadratic_step(&model, options, memory)?.finish(self.frame(), at))
+        Ok(quadratic_step(self.frame(), &model, options, memory)?.finish(self.frame(), at))
     }
 }
 
@@ -162,7 +165,12 @@ impl LocalStep {
 }
 
 /// The least of a quadratic under the prepared constraints.
-fn quadratic_step(model: &Quadratic, options: &StepOptions, memory: &mut StepMemory) -> Result<LocalStep, StepError> {
+fn quadratic_step(
+    frame: &BodyFrame,
+    model: &Quadratic,
+    options: &StepOptions,
+    memory: &mut StepMemory,
+) -> Result<LocalStep, StepError> {
     let StepMemory { contacts, rows, .. } = memory;
     let known = model.value.is_finite() && model.gradient.iter().chain(model.hessian.iter()).all(|x| x.is_finite());
     if !known {
@@ -174,6 +182,8 @@ fn quadratic_step(model: &Quadratic, options: &StepOptions, memory: &mut StepMem
     let left = quadratic::violation(contacts, &solution.y);
     let (end, lower, violation) = match solution.end {
         End::Found => (StepEnd::Optimal, value, 0.0),
+        // Opposite contacts that leave no room but for rounding.
+        End::Empty if left <= SLACK * frame.radius => (StepEnd::Optimal, 0.0, left),
         End::Empty => (StepEnd::Infeasible, 0.0, left),
         End::Limit => (StepEnd::Limit, 0.0, left),
     };

@@ -28,7 +28,7 @@
 //! which needs no trust region and closes as fast as d vanishes.
 
 use super::Linear;
-use super::project::{End, LAST, Projected, Row, project};
+use super::project::{End, LAST, Row, project};
 use super::quadratic::{Factor, walls};
 use heapless::Vec;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -39,6 +39,8 @@ pub const MEMBERS: usize = 24;
 const REFERENCE: f64 = 1e-3;
 /// sqrt(e).
 const DAMPING: f64 = 1e-2;
+/// A step that is best cut below this fraction is tried again with the constraints' curvature.
+const CURVED: f64 = 0.9;
 /// Programs at most; three to six are usual.
 const MAX_PROGRAMS: usize = 40;
 
@@ -146,7 +148,7 @@ where
         let square = members.iter().fold(0.0, |m, p| f64::max(m, here.at(&p.r).norm_squared()));
         let size = square.sqrt();
         // The pose itself is within reach, or as good as.
-        if !(best.value > (1e-9 * first).max(1e-15 * radius)) || !(size > 0.0) {
+        if !(best.value > (1e-9 * first).max(1e-13 * radius)) || !(size > 0.0) {
             best.closed = true;
             best.lower = 0.0;
             return best;
@@ -155,50 +157,28 @@ where
         let factor = Factor::new(&(stiffness(weighted, radius) + body.stiffness * reference));
 
         rows.clear();
-        for c in contacts {
-            rows.push(Row::new(factor.forward(&c.normal), c.offset - c.normal.dot(&y)));
+        for c in contacts.iter().copied().chain(walls(trust)) {
+            // y satisfies all, to rounding that must not make the program empty.
+            rows.push(Row::new(factor.forward(&c.normal), (c.offset - c.normal.dot(&y)).min(0.0)));
         }
-        for c in walls(trust) {
-            rows.push(Row::new(factor.forward(&c.normal), c.offset - c.normal.dot(&y)));
-        }
-        let constraints = rows.len();
-        for p in &members {
-            let v = here.at(&p.r);
-            let mut normal = factor.forward(&wrench(&p.r, &(v * (-DAMPING / size)), radius));
-            normal[LAST] = 1.0;
-            rows.push(Row::new(normal, DAMPING * (v.norm_squared() - square) / (2.0 * size) + size / DAMPING));
-        }
-        let projected = project(rows, 7);
+        let program = Program { body, members: &members, here, size, factor, constraints: rows.len(), reference };
+        let Some(mut proposal) = program.propose(rows, best.value, None) else { return best };
         best.programs += 1;
-        if projected.end != End::Found {
-            return best;
-        }
-        let d = factor.backward(&projected.point);
-        let after = field.moved(&(y + d), radius);
-        let next = weights(&projected, rows, constraints, DAMPING / size);
-
-        let old = |p: &Member| p.weight / next.total;
-        let slip = |p: &Vector3<f64>| motion(p, &d, radius).norm() * (best.value + after.at(p).norm());
-        let mut lagrangian = 0.0;
-        for (p, new) in members.iter().zip(&next.points) {
-            lagrangian += new * 0.5 * after.at(&p.r).norm_squared() - (new - old(p)).abs() * slip(&p.r);
-        }
-        let share = reference / (next.total * body.reference.len() as f64);
-        lagrangian -= body.reference.iter().map(|r| share * slip(r)).sum::<f64>();
-        for &(row, u) in &projected.active {
-            if let Some(row) = rows[..constraints].get(row) {
-                // a.(y + d) - b, in the program's coordinates.
-                lagrangian += u / next.total * row.violation(&projected.point);
+        best.lower = best.lower.max(proposal.lower);
+        if proposal.fraction < CURVED {
+            let Some(corrected) = program.propose(rows, best.value, Some(&proposal.d)) else { return best };
+            best.programs += 1;
+            best.lower = best.lower.max(corrected.lower);
+            if corrected.height < proposal.height {
+                proposal = corrected;
             }
         }
-        best.lower = best.lower.max((2.0 * lagrangian).max(0.0).sqrt());
-
-        let fraction = least_of_parabolas(&members, &here, &d, radius);
+        let Proposal { d, weights, fraction, .. } = proposal;
         y += d * fraction;
-        for (p, new) in members.iter_mut().zip(&next.points) {
+        for (p, new) in members.iter_mut().zip(&weights) {
             p.weight += fraction * (new - p.weight);
         }
-        reference = REFERENCE;
+        reference = if fraction > 0.5 { (reference * 0.1).max(REFERENCE) } else { (reference * 10.0).min(1.0) };
         let (r, square) = (body.farthest)(&field.moved(&y, radius));
         if square.sqrt() < best.value {
             best.y = y;
@@ -226,35 +206,93 @@ fn meet(members: &mut Vec<Member, MEMBERS>, r: Vector3<f64>) {
     let _ = members.push(Member { r, weight: 0.0 });
 }
 
-struct Weights {
+/// One quadratic program at a point y.
+struct Program<'a, P> {
+    body: &'a Body<'a, P>,
+    members: &'a [Member],
+    /// The field of displacements at y.
+    here: Field,
+    /// F: the largest displacement of a member at y.
+    size: f64,
+    factor: Factor,
+    /// The rows of contacts and walls, which are there already.
+    constraints: usize,
+    /// Weight of the reference body.
+    reference: f64,
+}
+
+/// What a program proposes.
+struct Proposal {
+    d: Vector6<f64>,
     /// Convex weights of the members.
-    points: [f64; MEMBERS],
-    /// What their sum was before.
-    total: f64,
+    weights: [f64; MEMBERS],
+    /// The bound of the whole problem that the program's multipliers prove.
+    lower: f64,
+    /// How far along d the members' largest displacement is least, and its square there.
+    fraction: f64,
+    height: f64,
 }
 
-/// The members' multipliers, in the units of the Lagrangian.
-fn weights(projected: &Projected, rows: &[Row], constraints: usize, scale: f64) -> Weights {
-    let mut points = [0.0; MEMBERS];
-    for &(row, u) in &projected.active {
-        if row >= constraints {
-            points[row - constraints] = u / rows[row].length * scale;
+impl<P> Program<'_, P> {
+    /// Solves the program. With a `curved` step, the members' constraints have the quadratic term that they have at that step.
+    fn propose(&self, rows: &mut std::vec::Vec<Row>, most: f64, curved: Option<&Vector6<f64>>) -> Option<Proposal> {
+        let radius = self.body.radius;
+        rows.truncate(self.constraints);
+        for p in self.members {
+            let v = self.here.at(&p.r);
+            let mut normal = self.factor.forward(&wrench(&p.r, &(v * (-DAMPING / self.size)), radius));
+            normal[LAST] = 1.0;
+            let bend = curved.map_or(0.0, |d| motion(&p.r, d, radius).norm_squared());
+            let excess = (v.norm_squared() + bend - self.size * self.size) / (2.0 * self.size);
+            rows.push(Row::new(normal, DAMPING * excess + self.size / DAMPING));
         }
+        let projected = project(rows, 7);
+        if projected.end != End::Found {
+            return None;
+        }
+        let d = self.factor.backward(&projected.point);
+
+        let mut weights = [0.0; MEMBERS];
+        for &(row, u) in &projected.active {
+            if row >= self.constraints {
+                weights[row - self.constraints] = u / rows[row].length * (DAMPING / self.size);
+            }
+        }
+        let total: f64 = weights.iter().sum();
+        if !(total > 0.0) {
+            return None;
+        }
+        weights = weights.map(|w| w / total);
+
+        let after = self.here.moved(&d, radius);
+        let slip = |r: &Vector3<f64>| motion(r, &d, radius).norm() * (most + after.at(r).norm());
+        let mut lagrangian = 0.0;
+        for (p, new) in self.members.iter().zip(&weights) {
+            lagrangian += new * 0.5 * after.at(&p.r).norm_squared() - (new - p.weight / total).abs() * slip(&p.r);
+        }
+        let share = self.reference / (total * self.body.reference.len() as f64);
+        lagrangian -= self.body.reference.iter().map(|r| share * slip(r)).sum::<f64>();
+        for &(row, u) in &projected.active {
+            if let Some(row) = rows[..self.constraints].get(row) {
+                // a.(y + d) - b, in the program's coordinates.
+                lagrangian += u / total * row.violation(&projected.point);
+            }
+        }
+        let lower = (2.0 * lagrangian).max(0.0).sqrt();
+        let (fraction, height) = least_of_parabolas(self.members, &self.here, &d, radius);
+        Some(Proposal { d, weights, lower, fraction, height })
     }
-    let total: f64 = points.iter().sum();
-    let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
-    Weights { points: points.map(|w| w * scale), total: if total > 0.0 { total } else { 1.0 } }
 }
 
-/// The fraction of a step with the least maximum of the members' squared displacements, each a parabola of it.
-fn least_of_parabolas(members: &[Member], here: &Field, d: &Vector6<f64>, radius: f64) -> f64 {
+/// The fraction of a step with the least maximum of the members' squared displacements, each a parabola of it, and that maximum.
+fn least_of_parabolas(members: &[Member], here: &Field, d: &Vector6<f64>, radius: f64) -> (f64, f64) {
     let mut parabolas: Vec<[f64; 3], MEMBERS> = Vec::new();
     for p in members {
         let (v, m) = (here.at(&p.r), motion(&p.r, d, radius));
         let _ = parabolas.push([v.norm_squared(), 2.0 * v.dot(&m), m.norm_squared()]);
     }
-    // The highest parabola's slope tells on which side the least lies.
-    let rises = |t: f64| {
+    // The highest parabola, and its slope, which tells on which side the least lies.
+    let highest = |t: f64| {
         let mut highest = (f64::NEG_INFINITY, 0.0);
         for [a, b, c] in &parabolas {
             let height = a + t * (b + t * c);
@@ -262,15 +300,17 @@ fn least_of_parabolas(members: &[Member], here: &Field, d: &Vector6<f64>, radius
                 highest = (height, b + 2.0 * t * c);
             }
         }
-        highest.1 > 0.0
+        highest
     };
-    if !rises(1.0) {
-        return 1.0;
+    let end = highest(1.0);
+    if end.1 <= 0.0 {
+        return (1.0, end.0);
     }
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..12 {
         let middle = 0.5 * (low + high);
-        if rises(middle) { high = middle } else { low = middle }
+        if highest(middle).1 > 0.0 { high = middle } else { low = middle }
     }
-    if low > 0.0 { low } else { high }
+    let least = if low > 0.0 { low } else { high };
+    (least, highest(least).0)
 }

@@ -93,7 +93,7 @@ impl Default for StepOptions {
 /// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepEnd {
-    /// The least value, to the tolerance.
+    /// The least value, to the tolerance. All contacts hold, or contradict each other by at most 1e-10 of the body's radius.
     Optimal,
     /// No motion satisfies all contacts within the trust region. The step is the one whose largest violation is least.
     Infeasible,
@@ -108,7 +108,7 @@ pub struct Step {
     pub twist: Twist,
     /// The metric's value after the motion, a length, by the linearised model.
     pub value: f64,
-    /// No motion within the constraints has a lower value, by the same model and to rounding. 0 where the step is infeasible.
+    /// No motion within the constraints has a lower value, by the same model and to rounding. 0 where nothing is proved.
     pub lower: f64,
     /// The largest violation of a contact, a length, to first order; 0 where all hold.
     pub violation: f64,

@@ -153,9 +153,9 @@ impl State {
         let mut most = (0.0, None);
         for (i, row) in rows.iter().enumerate() {
             let violation = row.violation(&self.point);
-            let sizes = || size + last * row.normal[LAST].abs() + row.offset.abs() + ROUNDING / DEPENDENT * last;
+            let sizes = || size + last * row.normal[LAST].abs() + row.offset.abs();
             // An active row is met, as well as rounding lets it.
-            if violation > most.0 && violation > DEPENDENT * sizes() && !active.contains(&i) {
+            if violation > most.0 && violation > DEPENDENT * sizes() + ROUNDING * last && !active.contains(&i) {
                 most = (violation, Some(i));
             }
         }
