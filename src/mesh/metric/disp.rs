@@ -7,6 +7,7 @@
 
 use super::super::hull::{HullError, hull_vertices};
 use super::super::optimize::minimax::{self, Body, Field, stiffness};
+use super::super::optimize::quadratic::violation;
 use super::super::optimize::{Contact, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions};
 use super::{BodyFrame, Metric, prepare, quadratic_step};
 use core::fmt;
@@ -72,8 +73,8 @@ pub struct Disp {
     /// Relative to the centre, in the frame's axes, in the order of the tree.
     corners: Vec<Vector3<f64>>,
     nodes: Vec<Node>,
-    /// The outermost corners along the axes.
-    reference: Vec<Vector3<f64>>,
+    /// Corners that span the body.
+    reference: [Vector3<f64>; 4],
     stiffness: Matrix6<f64>,
 }
 
@@ -102,15 +103,10 @@ impl Disp {
         let mut corners: Vec<Vector3<f64>> = points().map(|p| frame.axes.tr_mul(&(p - centre))).collect();
         frame.radius = corners.iter().fold(0.0, |m, r| f64::max(m, r.norm()));
 
-        let mut extents = [0, 1, 2].map(|k| corners.iter().fold(0.0, |m, r| f64::max(m, r[k].abs())));
-        extents.sort_by(f64::total_cmp);
-        if !(extents[1] > 1e-12 * frame.radius) {
+        let reference = tetrahedron(&corners);
+        let [a, b, c, _] = reference;
+        if !((b - a).cross(&(c - a)).norm() > 1e-12 * frame.radius * frame.radius) {
             return Err(DispError::Collinear);
-        }
-        let mut reference: Vec<Vector3<f64>> = Vec::new();
-        for k in 0..3 {
-            reference.extend(corners.iter().max_by(|a, b| a[k].total_cmp(&b[k])));
-            reference.extend(corners.iter().min_by(|a, b| a[k].total_cmp(&b[k])));
         }
         let share = 1.0 / reference.len() as f64;
         let stiffness = stiffness(reference.iter().map(|r| (share, r)), frame.radius);
@@ -165,6 +161,19 @@ impl Disp {
     }
 }
 
+/// The point farthest from the centre, the one farthest from that, from the line through both, and from the plane through the three: as large a
+/// tetrahedron as comes cheaply. It is flat only where the body is.
+fn tetrahedron(points: &[Vector3<f64>]) -> [Vector3<f64>; 4] {
+    let most = |score: &dyn Fn(&Vector3<f64>) -> f64| {
+        points.iter().fold(points[0], |best, r| if score(r) > score(&best) { *r } else { best })
+    };
+    let a = most(&|r| r.norm());
+    let b = most(&|r| (r - a).norm());
+    let c = most(&|r| (r - a).cross(&(b - a)).norm());
+    let d = most(&|r| (r - a).dot(&(b - a).cross(&(c - a))).abs());
+    [a, b, c, d]
+}
+
 /// Appends the tree over these corners, which begin at position `offset` of all, and sorts them into it.
 fn build(nodes: &mut Vec<Node>, corners: &mut [Vector3<f64>], offset: usize) {
     let low = corners.iter().fold(corners[0], |m, r| m.inf(r));
@@ -193,7 +202,7 @@ impl Metric for Disp {
         &self.frame
     }
 
-    /// The mean square displacement of the outermost corners along the axes: a smooth stand-in, with which the step begins.
+    /// The mean square displacement of four corners that span the body: a smooth stand-in, with which the step begins.
     fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
         let field = self.field(from, at);
         let share = 1.0 / self.reference.len() as f64;
@@ -233,6 +242,7 @@ impl Metric for Disp {
         step.y = solution.y;
         step.value = solution.value;
         step.lower = solution.lower;
+        step.violation = violation(contacts, &step.y);
         step.programs += solution.programs;
         step.end = if solution.closed { StepEnd::Optimal } else { StepEnd::Limit };
         Ok(step.finish(&self.frame, at))

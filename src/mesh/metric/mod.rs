@@ -178,14 +178,13 @@ fn quadratic_step(
     }
     let solution = minimise(model, contacts, options.trust, rows);
     let value = model.at(&solution.y).sqrt();
-    // What rounding leaves of a constraint that holds.
-    let left = quadratic::violation(contacts, &solution.y);
-    let (end, lower, violation) = match solution.end {
-        End::Found => (StepEnd::Optimal, value, 0.0),
+    let violation = quadratic::violation(contacts, &solution.y);
+    let (end, lower) = match solution.end {
+        End::Found => (StepEnd::Optimal, value),
         // Opposite contacts that leave no room but for rounding.
-        End::Empty if left <= SLACK * frame.radius => (StepEnd::Optimal, 0.0, left),
-        End::Empty => (StepEnd::Infeasible, 0.0, left),
-        End::Limit => (StepEnd::Limit, 0.0, left),
+        End::Empty if violation <= SLACK * frame.radius => (StepEnd::Optimal, 0.0),
+        End::Empty => (StepEnd::Infeasible, 0.0),
+        End::Limit => (StepEnd::Limit, 0.0),
     };
     Ok(LocalStep { y: solution.y, value, lower, violation, programs: solution.programs, end })
 }

@@ -110,7 +110,8 @@ pub struct Step {
     pub value: f64,
     /// No motion within the constraints has a lower value, by the same model and to rounding. 0 where nothing is proved.
     pub lower: f64,
-    /// The largest violation of a contact, a length, to first order; 0 where all hold.
+    /// The largest violation of a contact, a length, to first order; 0 where all hold exactly. Unless the step is infeasible, it is
+    /// rounding: below 1e-10 of the body's radius, and of a plate or needle that times the radius over the thickness.
     pub violation: f64,
     /// Quadratic programs solved.
     pub programs: usize,

@@ -256,3 +256,97 @@ pub fn dot(a: &Wide, b: &Wide) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Random numbers in [-1, 1).
+    struct Noise(u64);
+
+    impl Noise {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn row(&mut self, dimension: usize) -> Row {
+            let normal = core::array::from_fn(|k| if k < dimension { self.next() } else { 0.0 });
+            Row::new(normal, 0.3 * self.next())
+        }
+    }
+
+    /// Stationary, feasible, complementary: the conditions that are necessary and sufficient.
+    fn assert_optimal(rows: &[Row], found: &Projected) {
+        let size = 1.0 + dot(&found.point, &found.point).sqrt();
+        let mut sum = [0.0; WIDTH];
+        for &(row, u) in &found.active {
+            assert!(u >= 0.0 && rows[row].violation(&found.point).abs() < 1e-9 * size);
+            for k in 0..WIDTH {
+                sum[k] += u * rows[row].normal[k];
+            }
+        }
+        for k in 0..WIDTH {
+            assert!((sum[k] - found.point[k]).abs() < 1e-9 * size, "{sum:?} {:?}", found.point);
+        }
+        assert!(rows.iter().all(|row| row.violation(&found.point) < 1e-9 * size));
+    }
+
+    /// In the plane by trial: a polygon that is not empty has a corner, or a line's nearest point to the origin, or the origin.
+    fn planar_feasible(rows: &[Row]) -> bool {
+        let satisfied = |x: [f64; 2]| {
+            let mut wide = [0.0; WIDTH];
+            wide[..2].copy_from_slice(&x);
+            rows.iter().all(|row| row.violation(&wide) < 1e-12)
+        };
+        let lines = || rows.iter().map(|row| (row.normal[0], row.normal[1], row.offset));
+        let crossing = lines().flat_map(|a| lines().map(move |b| (a, b))).any(|((a, b, e), (c, d, f))| {
+            let det = a * d - b * c;
+            det.abs() > 1e-12 && satisfied([(e * d - b * f) / det, (a * f - e * c) / det])
+        });
+        crossing || lines().any(|(a, b, e)| satisfied([a * e, b * e])) || satisfied([0.0, 0.0])
+    }
+
+    #[test]
+    fn random_polyhedra_satisfy_the_conditions_of_optimality() {
+        let mut noise = Noise(1);
+        let (mut found, mut empty) = (0, 0);
+        for run in 0..2000 {
+            let dimension = 1 + run % 7;
+            let count = [0, 1, 3, 8, 20, 60, 300][run / 7 % 7];
+            let mut rows: std::vec::Vec<Row> = (0..count).map(|_| noise.row(dimension)).collect();
+            // Repeated rows, nearly repeated, and opposite ones with no room between.
+            for k in 1..rows.len() {
+                let before = rows[k - 1];
+                match k % 9 {
+                    3 => rows[k] = before,
+                    5 => rows[k] = Row::new(before.normal.map(|x| x * (1.0 + 1e-13)), before.offset),
+                    7 => rows[k] = Row::new(before.normal.map(|x| -x), -before.offset),
+                    _ => {}
+                }
+            }
+            let result = project(&rows, dimension);
+            match result.end {
+                End::Found => {
+                    found += 1;
+                    assert_optimal(&rows, &result);
+                    assert!(dimension != 2 || planar_feasible(&rows));
+                }
+                End::Empty => {
+                    empty += 1;
+                    assert!(dimension != 2 || !planar_feasible(&rows));
+                }
+                End::Limit => panic!("run {run}"),
+            }
+        }
+        assert!(found > 500 && empty > 200, "{found} {empty}");
+    }
+
+    #[test]
+    fn a_row_of_zeros_says_nothing_or_everything() {
+        let zeros = |offset| Row::new([0.0; WIDTH], offset);
+        assert_eq!(project(&[zeros(-1.0)], 6).end, End::Found);
+        assert_eq!(project(&[zeros(0.0)], 6).end, End::Found);
+        assert_eq!(project(&[zeros(1.0)], 6).end, End::Empty);
+    }
+}
