@@ -69,8 +69,10 @@ fn problem(dice: &mut Dice, corners: usize, contacts: usize, scale: f64, trust: 
     Problem { vertices, from, at, contacts: list, options: StepOptions { trust: trust * scale, tolerance: 1e-6 } }
 }
 
-/// a.x >= b for the twist x = (linear, radius angular) about a point, in the world's axes.
-fn rows(problem: &Problem, metric: &dyn Metric) -> (Vec<(Vector6<f64>, f64)>, Vec<(Vector6<f64>, f64)>) {
+type Inequality = (Vector6<f64>, f64);
+
+/// The contacts and the walls of the trust region, a.x >= b for the twist x = (linear, radius angular) about a point, in the world's axes.
+fn rows(problem: &Problem, metric: &dyn Metric) -> (Vec<Inequality>, Vec<Inequality>) {
     let frame = metric.frame();
     let about = problem.at * frame.centre;
     let wrench = |f: Vector3<f64>, m: Vector3<f64>| Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z);
@@ -249,7 +251,7 @@ fn variables(step: &Step, radius: f64) -> Vector6<f64> {
 fn quadratic_oracles(problem: &Problem, metric: &dyn Metric) -> (Oracle, Oracle) {
     let (contacts, walls) = rows(problem, metric);
     let table = |extra: f64| {
-        let row = |(n, _): &(Vector6<f64>, f64), e: f64| n.iter().map(|x| -x).chain([-e]).collect::<Vec<f64>>();
+        let row = |(n, _): &Inequality, e: f64| n.iter().map(|x| -x).chain([-e]).collect::<Vec<f64>>();
         let a: Vec<_> = contacts.iter().map(|c| row(c, extra)).chain(walls.iter().map(|c| row(c, 0.0))).collect();
         let b: Vec<_> = contacts.iter().chain(&walls).map(|c| -c.1).collect();
         (a, b)

@@ -11,7 +11,9 @@
 //!
 //! whose multipliers are the next weights l_i: at the optimum they are convex weights of the farthest points, the Hessian is that of the
 //! Lagrangian, and convergence is quadratic but for the small terms in H and e, which make the program strictly convex and
-//! vanish with d. A search along d for the least of the parabolas' maximum keeps far starts from overshooting.
+//! vanish with d. A search along d for the least of the parabolas' maximum keeps far starts from overshooting. Where it cuts d, points with
+//! little weight bend upwards along d, which H does not show: the program is solved once more with their quadratic term at d added to
+//! f_i (a second-order correction), the better of both steps is taken, and the reference body counts for more in the next.
 //!
 //! **Which points.** Only those that have once been the farthest take part; a new one is looked for after each step, in the whole body, by
 //! the caller's hierarchy.
