@@ -423,6 +423,50 @@ fn a_pose_that_is_reached_is_left_alone() {
     }
 }
 
+/// Where the axes are unique, a step is the same motion whatever the frames of the world and of the mesh.
+#[test]
+fn steps_do_not_depend_on_frames() {
+    let mut dice = Dice::new(18);
+    let mut memory = StepMemory::new(30);
+    for _ in 0..100 {
+        let mut p = problem(&mut dice, 40, 30, 1.0, 0.05);
+        p.options.tolerance = 1e-9;
+        let (world, own) = (pose(&mut dice, 2.0), pose(&mut dice, 2.0));
+        let back = own.inverse();
+        let there = Problem {
+            vertices: p.vertices.iter().map(|x| own * x).collect(),
+            from: world * p.from * back,
+            at: world * p.at * back,
+            contacts: p
+                .contacts
+                .iter()
+                .map(|c| Contact { point: world * c.point, normal: world * c.normal, gap: c.gap })
+                .collect(),
+            options: p.options,
+        };
+        let mass = MassProperties {
+            volume: 1.0,
+            centre: Point3::new(0.1, 0.2, 0.3),
+            inertia: Matrix3::from_diagonal(&Vector3::new(0.3, 0.4, 0.5)),
+        };
+        let turn = own.rotation.to_rotation_matrix().into_inner();
+        let mass_there =
+            MassProperties { centre: own * mass.centre, inertia: turn * mass.inertia * turn.transpose(), ..mass };
+        let disps = [Disp::new(&p.vertices).unwrap(), Disp::new(&there.vertices).unwrap()];
+        let sigmas = [Sigma::new(&mass), Sigma::new(&mass_there)];
+        for [metric, other] in [[&disps[0] as &dyn Metric, &disps[1]], [&sigmas[0], &sigmas[1]]] {
+            let step = metric.step(&p.from, &p.at, &p.contacts, &p.options, &mut memory).unwrap();
+            let image = other.step(&there.from, &there.at, &there.contacts, &there.options, &mut memory).unwrap();
+            assert!((step.value - image.value).abs() < 1e-7, "{step:?} {image:?}");
+            assert!((world * step.twist.about - image.twist.about).norm() < 1e-9);
+        }
+        let step = sigmas[0].step(&p.from, &p.at, &p.contacts, &p.options, &mut memory).unwrap();
+        let image = sigmas[1].step(&there.from, &there.at, &there.contacts, &there.options, &mut memory).unwrap();
+        assert!((world * step.twist.linear - image.twist.linear).norm() < 1e-7);
+        assert!((world * step.twist.angular - image.twist.angular).norm() < 1e-7);
+    }
+}
+
 #[test]
 fn bad_input_is_named() {
     let mut dice = Dice::new(14);
