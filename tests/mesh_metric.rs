@@ -311,3 +311,51 @@ fn models_are_the_square_to_first_order_and_sigma_is_quadratic_in_its_chart() {
         }
     }
 }
+
+/// Vertices and triangles of an OBJ file; polygons as fans.
+fn read_obj(path: &std::path::Path) -> Mesh {
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for line in std::fs::read_to_string(path).unwrap().lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.split_first() {
+            Some((&"v", x)) => points.push(Point3::from([0, 1, 2].map(|k| x[k].parse::<f64>().unwrap()))),
+            Some((&"f", corners)) => {
+                let index = |word: &&str| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                let corners: Vec<u32> = corners.iter().map(index).collect();
+                triangles.extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
+            }
+            _ => {}
+        }
+    }
+    (points, triangles)
+}
+
+/// The shared queries' values were computed elsewhere, from their poses and the files.
+#[test]
+fn metrics_agree_with_the_shared_queries() {
+    let Some(path) = common::shared("metrics_agree_with_the_shared_queries", "meshes/queries.json") else { return };
+    let data: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let pose = |value: &serde_json::Value| {
+        let numbers =
+            |key: &str| value[key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect::<Vec<_>>();
+        let (q, t) = (numbers("q_wxyz"), numbers("t"));
+        let turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
+        Isometry3::from_parts(Vector3::from_column_slice(&t).into(), turn)
+    };
+    let mut compared = 0;
+    for query in data["queries"].as_array().unwrap() {
+        let mesh = read_obj(&path.with_file_name(query["A"].as_str().unwrap()));
+        let from = pose(&query["pose0"]);
+        let disp = Disp::new(&mesh.0).unwrap();
+        let solid = MassProperties::new(&mesh.0, &mesh.1).map(|mass| Sigma::new(&mass));
+        let close = |value: f64, key: &str| {
+            let expected = query[key].as_f64().unwrap();
+            assert!((value - expected).abs() < 1e-9 * expected, "{} {key}: {value} {expected}", query["id"]);
+        };
+        close(disp.distance(&from, &pose(&query["disp_pose"])), "disp_ub");
+        let sigma = solid.unwrap_or_else(|error| panic!("{}: {error}", query["A"]));
+        close(sigma.distance(&from, &pose(&query["sigma_pose"])), "sqrt_sigma_ub");
+        compared += 1;
+    }
+    assert!(compared > 50);
+}
