@@ -23,6 +23,9 @@
 //! # Parts
 //!
 //! ```text
+//! metric                      how far a pose is from another: DISP, object norm
+//!  optimize                   the best small motion that contacts allow
+//!   mass  hull                volume, centre, inertia; vertices of the convex hull
 //! proximity                   two meshes: solid test, distance, contacts, motion along a screw
 //!  surface                    a mesh: vertices, triangles, and all that is derived from them once
 //!   check                     what is wrong with it, and whether it bounds a solid
@@ -38,6 +41,10 @@
 
 mod bvh;
 pub mod check;
+pub mod hull;
+pub mod mass;
+pub mod metric;
+pub mod optimize;
 pub mod proximity;
 mod surface;
 pub mod topology;
