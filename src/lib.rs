@@ -101,6 +101,8 @@ mod distance;
 #[cfg(feature = "grasp")]
 pub mod grasp;
 mod meridian;
+#[cfg(feature = "mesh")]
+pub mod mesh;
 #[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
 #[path = "capi/panic.rs"]
 mod panic;

@@ -1,0 +1,228 @@
+//! Looking for the pair of pieces with the greatest depth.
+//!
+//! There are tens of thousands of pairs and one of them matters. The pairs whose middle balls overlap most are starts. From a start the
+//! search alternates: the best piece of B for this piece of A, then the best piece of A for that one, until nothing
+//! improves. Most pairs end in their first support call, because the solver is asked only whether they beat the
+//! best so far.
+
+use super::piece::Piece;
+use super::sigma::{Lever, Separation, selected};
+use super::{Effort, Pieces};
+use crate::scalar::Real;
+use crate::support::Points;
+use crate::{Body, Options, Workspace};
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// What is maximised over the pairs.
+#[derive(Clone, Copy)]
+pub(super) enum Goal<'q> {
+    /// The depth.
+    Disp,
+    /// About what the depth bounds of the object norm; the bound itself is proved afterwards.
+    SqrtSigma(&'q Lever),
+}
+
+/// A pair of pieces that was solved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub a: usize,
+    pub b: usize,
+    /// The depth is not less.
+    pub depth: f64,
+    /// What the goal makes of it.
+    pub value: f64,
+    /// From A to B.
+    pub normal: Vector3<f64>,
+}
+
+/// Enough for pieces: a run that needs more memory ends with a wider bracket.
+pub(super) type Memory = Workspace<f64, 3, 512, 1024>;
+
+/// A better pair must be better by this share: gains below it are left to the last refinement.
+const GAIN: f64 = 1e-3;
+/// Alternations from one start.
+const ROUNDS: usize = 6;
+
+/// One query's search.
+pub(super) struct Search<'q> {
+    a: &'q Pieces,
+    b: &'q Pieces,
+    memory: &'q mut Memory,
+    rotation: Matrix3<f64>,
+    translation: Vector3<f64>,
+    goal: Goal<'q>,
+    /// Middles of A's pieces in B's frame.
+    placed: Vec<Vector3<f64>>,
+    shapes: [Vec<Option<Points<'q, f64, 3>>>; 2],
+    /// Pairs that were looked at: what was not better then is not better later.
+    seen: Vec<bool>,
+    best: Option<Found>,
+    /// Every pair that was the best once.
+    log: Vec<Found>,
+}
+
+impl<'q> Search<'q> {
+    pub fn new(memory: &'q mut Memory, a: &'q Pieces, b: &'q Pieces, pose: &Isometry3<f64>, goal: Goal<'q>) -> Self {
+        let rotation = pose.rotation.to_rotation_matrix().into_inner();
+        let translation = pose.translation.vector;
+        let placed = a.pieces.iter().map(|piece| rotation * piece.middle + translation).collect();
+        let shapes = [vec![None; a.pieces.len()], vec![None; b.pieces.len()]];
+        let seen = vec![false; a.pieces.len() * b.pieces.len()];
+        Search { a, b, memory, rotation, translation, goal, placed, shapes, seen, best: None, log: Vec::new() }
+    }
+
+    /// A bound of what rounding of the pose does to a point of either body: the conversion of the quaternion and the products with the rotation.
+    fn margin(&self) -> f64 {
+        64.0 * f64::ROUNDOFF * (self.a.reach + self.b.reach + self.translation.norm())
+    }
+
+    /// Runs the search of one level of effort on top of what is known.
+    pub fn run(&mut self, effort: Effort) {
+        match effort {
+            Effort::Fast => self.climb_from(1),
+            Effort::Default => self.climb_from(3),
+            Effort::Heavy => {
+                for a in 0..self.a.pieces.len() {
+                    for b in 0..self.b.pieces.len() {
+                        self.consider(a, b);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The depth of the best pair to all digits.
+    pub fn refined(&mut self) -> f64 {
+        let Some(best) = self.best else { return 0.0 };
+        let fine = self.solve(best.a, best.b, best.normal, Options { relative: 1e-9, ..Options::default() });
+        (fine.map_or(0.0, |found| found.depth).max(best.depth) - self.margin()).max(0.0)
+    }
+
+    /// The bound of the object norm that the best pairs prove.
+    pub fn sqrt_sigma(&self, lever: &Lever, effort: Effort) -> f64 {
+        let (pairs, cells) = match effort {
+            Effort::Fast => (1, 96),
+            Effort::Default => (2, 256),
+            Effort::Heavy => (64, 20_000),
+        };
+        let mut best: f64 = 0.0;
+        for found in self.log.iter().rev().take(pairs) {
+            let into_a = |p| self.rotation.tr_mul(&(p - self.translation));
+            let b = selected(&self.b.pieces[found.b].corners).map(into_a);
+            best = best.max((found.depth - self.margin()) / lever.largest(found.a));
+            if let Some(separation) = Separation::new(lever, found.a, b, self.margin()) {
+                best = best.max(separation.bound(cells, best));
+            }
+        }
+        best
+    }
+
+    /// Climbs from the most promising pairs, no two with the same piece.
+    fn climb_from(&mut self, starts: usize) {
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for a in 0..self.a.pieces.len() {
+            // The best partner of each piece.
+            let scores = (0..self.b.pieces.len()).map(|b| (self.score(a, b), a, b));
+            pairs.extend(scores.max_by(|x, y| x.0.total_cmp(&y.0)));
+        }
+        pairs.sort_by(|x, y| y.0.total_cmp(&x.0));
+        let mut taken: Vec<usize> = Vec::new();
+        for (_, a, b) in pairs {
+            if taken.len() >= starts {
+                break;
+            }
+            if !taken.contains(&b) {
+                taken.push(b);
+                self.climb(a, b);
+            }
+        }
+    }
+
+    fn climb(&mut self, mut a: usize, mut b: usize) {
+        self.consider(a, b);
+        for _ in 0..ROUNDS {
+            let before = self.best.map(|best| best.value);
+            for k in self.ordered(self.b.pieces.len(), |s, k| s.score(a, k)) {
+                self.consider(a, k);
+            }
+            b = self.best.map_or(b, |best| best.b);
+            for k in self.ordered(self.a.pieces.len(), |s, k| s.score(k, b)) {
+                self.consider(k, b);
+            }
+            a = self.best.map_or(a, |best| best.a);
+            if self.best.map(|best| best.value) == before {
+                break;
+            }
+        }
+    }
+
+    fn ordered(&self, count: usize, score: impl Fn(&Self, usize) -> f64) -> Vec<usize> {
+        let mut scored: Vec<_> = (0..count).map(|k| (score(self, k), k)).collect();
+        scored.sort_by(|x, y| y.0.total_cmp(&x.0));
+        scored.into_iter().map(|(_, k)| k).collect()
+    }
+
+    /// The depth of the balls about the middles.
+    fn score(&self, a: usize, b: usize) -> f64 {
+        let (p, q) = (&self.a.pieces[a], &self.b.pieces[b]);
+        p.inradius + q.inradius - (self.placed[a] - q.middle).norm()
+    }
+
+    /// Solves a pair if it may be better than the best.
+    fn consider(&mut self, a: usize, b: usize) {
+        if std::mem::replace(&mut self.seen[a * self.b.pieces.len() + b], true) {
+            return;
+        }
+        let (p, q) = (&self.a.pieces[a], &self.b.pieces[b]);
+        let ease = match self.goal {
+            Goal::Disp => 1.0,
+            Goal::SqrtSigma(lever) => lever.least(a),
+        };
+        let needed = self.best.map_or(0.0, |best| best.value * ease * (1.0 + GAIN));
+        let apart = self.placed[a] - q.middle;
+        if p.radius + q.radius - apart.norm() <= needed {
+            return;
+        }
+        let guess = self.best.map_or(-apart, |best| best.normal);
+        if needed > 0.0 {
+            // Most pairs are no better than the best along the very direction that bounds that one.
+            if p.height(&self.rotation.tr_mul(&guess)) + guess.dot(&self.translation) + q.height(&-guess) <= needed {
+                return;
+            }
+            let options = Options { threshold: Some(needed), relative: 1e-2, ..Options::default() };
+            match self.solve(a, b, guess, options) {
+                Some(found) if found.depth >= needed => {}
+                _ => return,
+            }
+        }
+        let Some(found) = self.solve(a, b, guess, Options { relative: 1e-3, ..Options::default() }) else { return };
+        if self.best.is_none_or(|best| found.value > best.value) && found.value > 0.0 {
+            self.best = Some(found);
+            self.log.push(found);
+        }
+    }
+
+    fn solve(&mut self, a: usize, b: usize, guess: Vector3<f64>, options: Options<f64, 3>) -> Option<Found> {
+        let shape = |list: &mut Vec<Option<Points<'q, f64, 3>>>, pieces: &'q [Piece], k: usize| {
+            let cached: &mut Option<_> = &mut list[k];
+            if cached.is_none() {
+                *cached = Points::new(&pieces[k].corners).ok();
+            }
+            *cached
+        };
+        let on_a = shape(&mut self.shapes[0], &self.a.pieces, a)?;
+        let on_b = shape(&mut self.shapes[1], &self.b.pieces, b)?;
+        let body = Body::new(&on_a, self.rotation, self.translation).ok()?;
+        let guess = guess.iter().any(|&x| x != 0.0).then_some(guess);
+        let other = Body::at(&on_b, Vector3::zeros());
+        let depth = self.memory.solver().depth(&body, &other, &Options { guess, ..options });
+        let value = match self.goal {
+            Goal::Disp => depth.lower,
+            Goal::SqrtSigma(lever) => {
+                let x = self.rotation.tr_mul(&(depth.point_a - self.translation));
+                depth.lower / lever.along(&x, &self.rotation.tr_mul(&depth.normal))
+            }
+        };
+        Some(Found { a, b, depth: depth.lower, value, normal: depth.normal })
+    }
+}

@@ -1,0 +1,3 @@
+//! Triangle meshes.
+
+pub mod certificate;
