@@ -353,7 +353,7 @@ fn frames_and_units_do_not_matter() {
             assert!((before - after).abs() <= 0.02 * before, "{k}: {before} {after}");
             let before = certifier.sqrt_sigma(&first, &second, &pose, Effort::Heavy);
             let after = certifier.sqrt_sigma(&new_a, &new_b, &moved, Effort::Heavy) / scale;
-            assert!((before - after).abs() <= 0.1 * before, "{k}: {before} {after}");
+            assert!((before - after).abs() <= 0.2 * before, "{k}: {before} {after}");
         }
     }
 }
