@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// How thoroughly a solid is filled with pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// Most pieces to keep. Default 256.
+    /// No new pieces beyond so many. Default 384.
     pub max_pieces: usize,
     /// Surface points to look for inscribed balls from. Default 2000.
     pub samples: usize,
@@ -22,7 +22,7 @@ pub struct BuildOptions {
 
 impl Default for BuildOptions {
     fn default() -> Self {
-        BuildOptions { max_pieces: 256, samples: 2000, cover: 0.9, rounds: 3 }
+        BuildOptions { max_pieces: 384, samples: 2000, cover: 0.9, rounds: 3 }
     }
 }
 

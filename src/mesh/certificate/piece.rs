@@ -10,7 +10,7 @@ use crate::qset::Ball;
 use crate::scalar::Real;
 use crate::support::{Points, Support};
 use crate::{Options, Workspace};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// A convex polytope inside a solid.
 #[derive(Clone, Debug)]
@@ -32,34 +32,38 @@ impl Piece {
         &self.corners
     }
 
-    /// Finds balls on the way from the middle to the faces, edges and corners of the box around it in its principal axes.
+    /// Finds balls on the way from the middle to spread corners and to the middles between them (of a box: to corners, edges and
+    /// faces).
     pub(super) fn fill(&mut self) {
         let corners: Vec<_> = self.corners.iter().map(|&p| Vector3::from(p)).collect();
-        let spread: Matrix3<f64> = corners.iter().map(|p| (p - self.middle) * (p - self.middle).transpose()).sum();
-        let axes = spread.symmetric_eigen().eigenvectors;
-        for direction in 0..27 {
-            let signs = [direction % 3, direction / 3 % 3, direction / 9].map(|k| f64::from(k - 1));
-            let mut way = Vector3::zeros();
-            for (sign, axis) in signs.iter().zip(axes.column_iter()) {
-                let axis = axis * *sign;
-                way += axis * (self.height(&axis) - axis.dot(&self.middle));
+        let spread = spread(&corners, &self.middle);
+        let between = |(k, p): (usize, &Vector3<f64>)| spread[k..].iter().map(|q| (p + q) * 0.5).collect::<Vec<_>>();
+        let mut aims: Vec<Vector3<f64>> = Vec::new();
+        for aim in spread.iter().enumerate().flat_map(between) {
+            let near = 0.2 * self.inradius;
+            if aims.iter().chain([&self.middle]).all(|p| (p - aim).norm() > near) {
+                aims.push(aim);
             }
-            for share in STEPS {
-                let center = self.middle + way * share;
-                let radius = inradius(&center, &corners);
-                if radius > LEAST_BALL * self.inradius {
-                    self.balls.push((center, radius));
-                }
+        }
+        for (aim, share) in aims.iter().flat_map(|aim| STEPS.map(|share| (aim, share))) {
+            let center = self.middle + (aim - self.middle) * share;
+            let radius = inradius(&center, &corners);
+            if radius > LEAST_BALL * self.inradius {
+                self.balls.push((center, radius));
             }
         }
     }
 
-    /// How far it reaches along u.
-    pub(super) fn height(&self, u: &Vector3<f64>) -> f64 {
-        self.corners.iter().map(|&[x, y, z]| u.x * x + u.y * y + u.z * z).fold(f64::MIN, f64::max)
+    /// How far it reaches along u, and the corner that does.
+    pub(super) fn farthest(&self, u: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let heights = self.corners.iter().map(|&p| u.x * p[0] + u.y * p[1] + u.z * p[2]);
+        let best = heights.enumerate().fold((f64::MIN, 0), |best, (k, h)| if h > best.0 { (h, k) } else { best });
+        (best.0, self.corners.get(best.1).map_or(self.middle, |&p| p.into()))
     }
 }
 
+/// Corners that balls are looked for towards.
+const SPREAD: usize = 8;
 /// Shares of the way from the middle.
 const STEPS: [f64; 3] = [0.3, 0.6, 0.85];
 /// Balls smaller than this share of the inradius are not kept.
@@ -120,6 +124,24 @@ fn is_apart(solid: &Solid, middle: &Vector3<f64>, corners: &[Vector3<f64>], plan
         let own = (t[1] - t[0]).cross(&(t[2] - t[0]));
         [own, -own].iter().any(|n| apart(n, top(n), &t))
     })
+}
+
+/// A few corners: each the farthest from those before it, the first from the middle.
+fn spread(corners: &[Vector3<f64>], middle: &Vector3<f64>) -> Vec<Vector3<f64>> {
+    let mut distances: Vec<f64> = corners.iter().map(|p| (p - middle).norm()).collect();
+    let mut chosen: Vec<Vector3<f64>> = Vec::new();
+    while chosen.len() < SPREAD {
+        let far = corners.iter().zip(&distances).max_by(|x, y| x.1.total_cmp(y.1));
+        let Some((&next, &distance)) = far else { break };
+        if !(distance > 0.0) {
+            break;
+        }
+        for (p, d) in corners.iter().zip(&mut distances) {
+            *d = if chosen.is_empty() { (p - next).norm() } else { d.min((p - next).norm()) };
+        }
+        chosen.push(next);
+    }
+    chosen
 }
 
 /// The radius of the largest ball about `middle` in the hull of `corners`, rounded down: d_Q for the unit ball.

@@ -40,6 +40,10 @@ pub(super) type Memory = Workspace<f64, 3, 512, 1024>;
 
 /// A better pair must be better by this share: gains below it are left to the last refinement.
 const GAIN: f64 = 1e-3;
+/// With all effort, pairs whose value is this share of the best are tried for the object norm.
+const RUNNER_UP: f64 = 0.8;
+/// Directions that are remembered.
+const HINTS: usize = 8;
 /// Alternations from one start.
 const ROUNDS: usize = 6;
 
@@ -56,8 +60,14 @@ pub(super) struct Search<'q> {
     shapes: [Vec<Option<Points<'q, f64, 3>>>; 2],
     /// Pairs that were looked at: what was not better then is not better later.
     seen: Vec<bool>,
+    /// Times the best value: what a pair must look like to be solved.
+    needed: f64,
+    /// Pairs that may still be solved.
+    budget: usize,
+    /// Directions that bounded pairs, the latest first.
+    hints: Vec<Vector3<f64>>,
     best: Option<Found>,
-    /// Every pair that was the best once.
+    /// Every pair that was solved for its depth.
     log: Vec<Found>,
 }
 
@@ -68,7 +78,23 @@ impl<'q> Search<'q> {
         let placed = a.pieces.iter().map(|piece| rotation * piece.middle + translation).collect();
         let shapes = [vec![None; a.pieces.len()], vec![None; b.pieces.len()]];
         let seen = vec![false; a.pieces.len() * b.pieces.len()];
-        Search { a, b, memory, rotation, translation, goal, placed, shapes, seen, best: None, log: Vec::new() }
+        let (hints, log) = (Vec::with_capacity(HINTS), Vec::new());
+        Search {
+            a,
+            b,
+            memory,
+            rotation,
+            translation,
+            goal,
+            placed,
+            shapes,
+            seen,
+            needed: 1.0 + GAIN,
+            budget: 0,
+            hints,
+            best: None,
+            log,
+        }
     }
 
     /// A bound of what rounding of the pose does to a point of either body: the conversion of the quaternion and the products with the rotation.
@@ -79,9 +105,15 @@ impl<'q> Search<'q> {
     /// Runs the search of one level of effort on top of what is known.
     pub fn run(&mut self, effort: Effort) {
         match effort {
-            Effort::Fast => self.climb_from(1),
-            Effort::Default => self.climb_from(3),
+            Effort::Fast => self.climb_from(1, 150),
+            Effort::Default => self.climb_from(4, 400),
             Effort::Heavy => {
+                self.budget = usize::MAX;
+                // The goal only guesses what a pair proves of the object norm: those that look a little worse are tried as well.
+                if matches!(self.goal, Goal::SqrtSigma(_)) {
+                    self.needed = RUNNER_UP;
+                    self.seen.fill(false);
+                }
                 for a in 0..self.a.pieces.len() {
                     for b in 0..self.b.pieces.len() {
                         self.consider(a, b);
@@ -99,14 +131,15 @@ impl<'q> Search<'q> {
     }
 
     /// The bound of the object norm that the best pairs prove.
-    pub fn sqrt_sigma(&self, lever: &Lever, effort: Effort) -> f64 {
+    pub fn sqrt_sigma(&mut self, lever: &Lever, effort: Effort) -> f64 {
         let (pairs, cells) = match effort {
             Effort::Fast => (1, 96),
             Effort::Default => (2, 256),
             Effort::Heavy => (64, 20_000),
         };
         let mut best: f64 = 0.0;
-        for found in self.log.iter().rev().take(pairs) {
+        self.log.sort_by(|x, y| y.value.total_cmp(&x.value));
+        for found in self.log.iter().take(pairs) {
             let into_a = |p| self.rotation.tr_mul(&(p - self.translation));
             let b = selected(&self.b.pieces[found.b].corners).map(into_a);
             best = best.max((found.depth - self.margin()) / lever.largest(found.a));
@@ -117,8 +150,9 @@ impl<'q> Search<'q> {
         best
     }
 
-    /// Climbs from the most promising pairs, no two with the same piece.
-    fn climb_from(&mut self, starts: usize) {
+    /// Climbs from the most promising pairs, no two with the same piece of B, and solves so many pairs at most.
+    fn climb_from(&mut self, starts: usize, budget: usize) {
+        self.budget = budget;
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for a in 0..self.a.pieces.len() {
             // The best partner of each piece.
@@ -170,7 +204,7 @@ impl<'q> Search<'q> {
 
     /// Solves a pair if it may be better than the best.
     fn consider(&mut self, a: usize, b: usize) {
-        if std::mem::replace(&mut self.seen[a * self.b.pieces.len() + b], true) {
+        if self.budget == 0 || std::mem::replace(&mut self.seen[a * self.b.pieces.len() + b], true) {
             return;
         }
         let (p, q) = (&self.a.pieces[a], &self.b.pieces[b]);
@@ -178,28 +212,47 @@ impl<'q> Search<'q> {
             Goal::Disp => 1.0,
             Goal::SqrtSigma(lever) => lever.least(a),
         };
-        let needed = self.best.map_or(0.0, |best| best.value * ease * (1.0 + GAIN));
+        let needed = self.best.map_or(0.0, |best| best.value * ease * self.needed);
         let apart = self.placed[a] - q.middle;
         if p.radius + q.radius - apart.norm() <= needed {
             return;
         }
-        let guess = self.best.map_or(-apart, |best| best.normal);
-        if needed > 0.0 {
-            // Most pairs are no better than the best along the very direction that bounds that one.
-            if p.height(&self.rotation.tr_mul(&guess)) + guess.dot(&self.translation) + q.height(&-guess) <= needed {
-                return;
-            }
-            let options = Options { threshold: Some(needed), relative: 1e-2, ..Options::default() };
-            match self.solve(a, b, guess, options) {
-                Some(found) if found.depth >= needed => {}
-                _ => return,
-            }
+        // Most pairs are no better along a direction that bounded another.
+        let enough = self.best.map_or(0.0, |best| best.value * self.needed);
+        if let Some(hint) = self.hints.iter().position(|u| self.value_along(p, q, u) <= enough) {
+            self.hints[..=hint].rotate_right(1);
+            return;
+        }
+        let guess = self.hints.first().map_or(-apart, |&u| u);
+        self.budget -= 1;
+        let options = Options { threshold: Some(needed), relative: 1e-2, ..Options::default() };
+        match self.solve(a, b, guess, options) {
+            Some(found) if found.depth >= needed && self.value_along(p, q, &found.normal) > enough => {}
+            Some(found) => return self.remember(found.normal),
+            None => return,
         }
         let Some(found) = self.solve(a, b, guess, Options { relative: 1e-3, ..Options::default() }) else { return };
-        if self.best.is_none_or(|best| found.value > best.value) && found.value > 0.0 {
-            self.best = Some(found);
+        if found.value > 0.0 {
             self.log.push(found);
+            self.best = self.best.filter(|best| best.value >= found.value).or(Some(found));
         }
+        self.remember(found.normal);
+    }
+
+    /// What the goal makes of the depth along u: for the object norm by the corner of A that is farthest.
+    fn value_along(&self, p: &Piece, q: &Piece, u: &Vector3<f64>) -> f64 {
+        let local = self.rotation.tr_mul(u);
+        let (height, corner) = p.farthest(&local);
+        let depth = height + u.dot(&self.translation) + q.farthest(&-u).0;
+        match self.goal {
+            Goal::Disp => depth,
+            Goal::SqrtSigma(lever) => depth / lever.along(&corner, &local),
+        }
+    }
+
+    fn remember(&mut self, normal: Vector3<f64>) {
+        self.hints.truncate(HINTS - 1);
+        self.hints.insert(0, normal);
     }
 
     fn solve(&mut self, a: usize, b: usize, guess: Vector3<f64>, options: Options<f64, 3>) -> Option<Found> {
