@@ -42,6 +42,9 @@ pub(super) type Memory = Workspace<f64, 3, 512, 1024>;
 const GAIN: f64 = 1e-3;
 /// With all effort, pairs whose value is this share of the best are tried for the object norm.
 const RUNNER_UP: f64 = 0.8;
+/// Balls whose travel is looked at, and cubes for each.
+const TRAVELLERS: usize = 6;
+const CUBES: usize = 3000;
 /// Directions that are remembered.
 const HINTS: usize = 8;
 /// Alternations from one start.
@@ -99,7 +102,7 @@ impl<'q> Search<'q> {
 
     /// A bound of what rounding of the pose does to a point of either body: the conversion of the quaternion and the products with the rotation.
     fn margin(&self) -> f64 {
-        64.0 * f64::ROUNDOFF * (self.a.reach + self.b.reach + self.translation.norm())
+        64.0 * f64::ROUNDOFF * (self.a.surface.reach() + self.b.surface.reach() + self.translation.norm())
     }
 
     /// Runs the search of one level of effort on top of what is known.
@@ -148,6 +151,30 @@ impl<'q> Search<'q> {
             }
         }
         best
+    }
+
+    /// The bound by the travel of A's most promising balls, where it is above `known`.
+    pub fn travel(&self, known: f64) -> f64 {
+        let k = |piece: usize| match self.goal {
+            Goal::Disp => 1.0,
+            Goal::SqrtSigma(lever) => lever.of_middle(piece),
+        };
+        let far = 2.0 * self.b.surface.reach();
+        let mut stuck: Vec<_> = self
+            .placed
+            .iter()
+            .zip(&self.a.pieces)
+            .enumerate()
+            .filter(|(_, (center, _))| center.norm() <= far)
+            .map(|(a, (center, piece))| (self.b.surface.stuck(center, piece.inradius), a))
+            .filter(|(depth, _)| *depth > 0.0)
+            .collect();
+        stuck.sort_by(|x, y| (y.0 / k(y.1)).total_cmp(&(x.0 / k(x.1))));
+        stuck.iter().take(TRAVELLERS).fold(known, |best, &(depth, a)| {
+            let (ball, enough, range) = (self.a.pieces[a].inradius, best * k(a), 4.0 * depth);
+            let travel = self.b.surface.travel(&self.placed[a], ball, range, enough, CUBES);
+            best.max((travel - self.margin()) / k(a))
+        })
     }
 
     /// Climbs from the most promising pairs, no two with the same piece of B, and solves so many pairs at most.

@@ -140,6 +140,11 @@ impl Lever {
         self.pieces.get(piece).map_or(1.0, |arms| arms.least)
     }
 
+    /// k of a piece's middle.
+    pub fn of_middle(&self, piece: usize) -> f64 {
+        self.pieces.get(piece).and_then(|arms| arms.arms.first()).map_or(f64::MAX, |arm| arm.2)
+    }
+
     /// The largest k on a piece.
     pub fn largest(&self, piece: usize) -> f64 {
         self.pieces.get(piece).map_or(f64::MAX, |arms| arms.most)

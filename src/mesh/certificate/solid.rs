@@ -72,18 +72,9 @@ impl Solid {
         self.triangles.iter().map(|t| t.map(|i| self.vertices[i]))
     }
 
-    /// Is the point, which is not near the surface, inside? The winding number from solid angles (van Oosterom and Strackee).
+    /// Is the point, which is not near the surface, inside?
     pub fn contains(&self, p: &Vector3<f64>) -> bool {
-        let half: f64 = self
-            .corners()
-            .map(|t| {
-                let [a, b, c] = t.map(|x| x - p);
-                let [x, y, z] = [a.norm(), b.norm(), c.norm()];
-                let denominator = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-                a.dot(&b.cross(&c)).atan2(denominator)
-            })
-            .sum();
-        half > std::f64::consts::PI
+        contains(self.corners(), p)
     }
 
     /// The surface point nearest to `p`, and its squared distance.
@@ -97,6 +88,19 @@ impl Solid {
         }
         best
     }
+}
+
+/// Is the winding number positive? By solid angles (van Oosterom and Strackee).
+pub(super) fn contains(triangles: impl Iterator<Item = Corners>, p: &Vector3<f64>) -> bool {
+    let half: f64 = triangles
+        .map(|t| {
+            let [a, b, c] = t.map(|x| x - p);
+            let [x, y, z] = [a.norm(), b.norm(), c.norm()];
+            let denominator = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+            a.dot(&b.cross(&c)).atan2(denominator)
+        })
+        .sum();
+    half > std::f64::consts::PI
 }
 
 /// Every directed edge needs its opposite.
