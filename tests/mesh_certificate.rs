@@ -428,6 +428,65 @@ fn apart_or_no_pose_is_zero() {
     }
 }
 
+/// A random walk downhill among the poses that separate two boxes: its end is an upper bound of either metric.
+#[test]
+fn no_walk_out_of_a_box_is_shorter() {
+    let mut dice = Dice::new(11);
+    let mut certifier = Certifier::new();
+    let mut tightest = [0.0f64; 2];
+    for k in 0..30 {
+        let half = |dice: &mut Dice| V3::new(dice.range(0.1, 1.0), dice.range(0.1, 1.0), dice.range(0.1, 1.0));
+        let (a, b) = (half(&mut dice), half(&mut dice));
+        let box_of = |h: &V3| cuboid(2.0 * h.x, 2.0 * h.y, 2.0 * h.z);
+        let mesh = box_of(&a);
+        let (first, second) = (mesh.pieces(), box_of(&b).pieces());
+        let inertia = mesh.mass().1;
+        let start = random_pose(&mut dice, 0.7);
+        if box_depth(&a, &b, &start) <= 0.01 {
+            continue;
+        }
+        let lower = [
+            certifier.disp(&first, &second, &start, Effort::Heavy),
+            certifier.sqrt_sigma(&first, &second, &start, Effort::Heavy),
+        ];
+        // The object norm by its closed form, with the relative rotation in A's frame.
+        let lengths = |pose: &Isometry3<f64>| {
+            let q = (start.rotation.inverse() * pose.rotation).into_inner().imag();
+            let sigma =
+                (pose.translation.vector - start.translation.vector).norm_squared() + 4.0 * q.dot(&(inertia * q));
+            let disp = mesh.vertices.iter().map(|p| (pose * p - start * p).norm()).fold(0.0, f64::max);
+            [disp, sigma.sqrt()]
+        };
+        for metric in 0..2 {
+            let mut best = f64::MAX;
+            for _ in 0..4 {
+                let mut pose = start;
+                let away = V3::new(dice.signed(), dice.signed(), dice.signed()).normalize();
+                while box_depth(&a, &b, &pose) > 0.0 {
+                    pose.translation.vector += away * 0.05;
+                }
+                let (mut length, mut step) = (lengths(&pose)[metric], 0.3);
+                for _ in 0..2000 {
+                    let by = V3::new(dice.signed(), dice.signed(), dice.signed()) * step;
+                    let turn = V3::new(dice.signed(), dice.signed(), dice.signed()) * step;
+                    let t = Translation3::from(pose.translation.vector + by);
+                    let next = Isometry3::from_parts(t, UnitQuaternion::from_scaled_axis(turn) * pose.rotation);
+                    if lengths(&next)[metric] < length && box_depth(&a, &b, &next) <= 0.0 {
+                        (pose, length) = (next, lengths(&next)[metric]);
+                        step *= 1.5;
+                    } else {
+                        step = f64::max(step * 0.97, 1e-5);
+                    }
+                }
+                best = best.min(length);
+            }
+            assert!(lower[metric] <= best, "{k}: {} {best}", lower[metric]);
+            tightest[metric] = tightest[metric].max(lower[metric] / best);
+        }
+    }
+    assert!(tightest[0] > 0.98 && tightest[1] > 0.9, "{tightest:?}");
+}
+
 /// Closed surfaces that are no solids one would draw: crossing themselves, flat in parts, of any size. Nothing panics, and what
 /// is said is a length.
 #[test]
@@ -527,6 +586,25 @@ fn shared_queries() {
     println!("queries, disp within 5 %, sqrt(sigma) within 25 %: {near:?}");
     let sum = |k: usize| ["knot", "cad", "hammer"].iter().map(|group| near[group][k]).sum::<usize>();
     assert!(sum(1) * 10 >= sum(0) * 6, "{near:?}");
+}
+
+/// Slivers among its triangles.
+#[test]
+fn pieces_of_the_shared_hammer_do_not_meet_its_surface() {
+    let Some(path) = shared("pieces_of_the_shared_hammer", "meshes/hammer.obj") else { return };
+    let mesh = read_obj(&std::fs::read_to_string(path).unwrap());
+    let mut memory = qdist::Workspace::<f64, 3, 256, 512>::new();
+    for piece in mesh.pieces().pieces() {
+        let hull = qdist::support::Points::new(piece.corners()).unwrap();
+        for t in mesh.corners() {
+            let triangle = t.map(|p| [p.x, p.y, p.z]);
+            let triangle = qdist::support::Points::new(&triangle).unwrap();
+            let (a, b) = (qdist::Body::at(&hull, V3::zeros()), qdist::Body::at(&triangle, V3::zeros()));
+            let options = qdist::Options { threshold: Some(0.0), ..qdist::Options::default() };
+            let depth = memory.solver().depth(&a, &b, &options);
+            assert!(depth.lower <= 0.0, "{depth:?}");
+        }
+    }
 }
 
 #[test]
