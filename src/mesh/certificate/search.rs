@@ -2,8 +2,8 @@
 //!
 //! There are tens of thousands of pairs and one of them matters. The pairs whose middle balls overlap most are starts. From a start the
 //! search alternates: the best piece of B for this piece of A, then the best piece of A for that one, until nothing
-//! improves. Most pairs end in their first support call, because the solver is asked only whether they beat the
-//! best so far.
+//! improves. Most pairs end at a direction that bounded another pair, the others mostly in the solver's first steps, because it is asked
+//! only whether they beat the best so far.
 
 use super::piece::Piece;
 use super::sigma::{Lever, Separation, selected};
@@ -60,6 +60,7 @@ pub(super) struct Search<'q> {
     goal: Goal<'q>,
     /// Middles of A's pieces in B's frame.
     placed: Vec<Vector3<f64>>,
+    /// The pieces as the solver sees them, made when first used.
     shapes: [Vec<Option<Points<'q, f64, 3>>>; 2],
     /// Pairs that were looked at: what was not better then is not better later.
     seen: Vec<bool>,
@@ -100,7 +101,8 @@ impl<'q> Search<'q> {
         }
     }
 
-    /// A bound of what rounding of the pose does to a point of either body: the conversion of the quaternion and the products with the rotation.
+    /// A bound of what rounding of the pose does to a point of either body: the conversion of the quaternion and the products
+    /// with the rotation.
     fn margin(&self) -> f64 {
         64.0 * f64::ROUNDOFF * (self.a.surface.reach() + self.b.surface.reach() + self.translation.norm())
     }
