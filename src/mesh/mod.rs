@@ -23,6 +23,7 @@
 //! # Parts
 //!
 //! ```text
+//! certificate                 how far A must move at the least: convex pieces inside both, and the core's depth
 //! metric                      how far a pose is from another: DISP, object norm
 //!  optimize                   the best small motion that contacts allow
 //!   mass  hull                volume, centre, inertia; vertices of the convex hull
@@ -40,6 +41,7 @@
 //! surface only. [`Report`] says which, and what is wrong where.
 
 mod bvh;
+pub mod certificate;
 pub mod check;
 pub mod hull;
 pub mod mass;
