@@ -80,18 +80,22 @@
 
 mod contact;
 mod frame;
+mod gradient;
 mod hand;
 mod jacobian;
 mod primitive;
+mod refine;
 mod span;
 mod svd;
 mod wrench_set;
 
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use frame::WrenchFrame;
+pub use gradient::ContactGradient;
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
 pub use primitive::Primitive;
+pub use refine::{Kink, Refined, Share};
 pub use span::Subspace;
 pub use wrench_set::{Contribution, Norm, WrenchSet};
 
