@@ -112,6 +112,8 @@ struct Tie<T> {
     /// A normalised column of the disc, or a direction out of the span.
     along: Vector6<T>,
     multiplier: T,
+    /// Of a tip: λ x is so many multipliers.
+    unit: T,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,19 +195,18 @@ impl<'a, T: Real> Refined<'a, T> {
             (None, Norm::LInf) if part.value > T::zero() => T::one(),
             (None, _) => T::zero(),
         };
-        let friction = tip(&self.ties, index, self.set.contributions()).map_or(part.x, |y| y / weight);
+        let friction = tip(&self.ties, index).map_or(part.x, |y| y / weight);
         Some(Share { weight, friction })
     }
 }
 
 /// λ x of a contact at its tip; `None`: it is not.
-fn tip<T: Real>(ties: &[Tie<T>], index: usize, primitives: &[Primitive<T>]) -> Option<Vector<T, 3>> {
-    let disc = primitives.get(index)?.disc();
+fn tip<T: Real>(ties: &[Tie<T>], index: usize) -> Option<Vector<T, 3>> {
     let (mut y, mut found) = (Vector::<T, 3>::zeros(), false);
     for tie in ties {
         for column in 0..3 {
             if tie.kind == Kind::Tip(index, column) {
-                y[column] = tie.multiplier / norm(&disc.column(column).into_owned());
+                y[column] = tie.multiplier * tie.unit;
                 found = true;
             }
         }
@@ -360,10 +361,10 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
     /// The equations that hold near u when `zero` counts as zero.
     fn guess(&self, u: &Vector6<T>, zero: T) -> Option<Vec<Tie<T>, TIES>> {
         let mut ties = Vec::new();
-        let mut tie = |kind, along, multiplier| ties.push(Tie { kind, along, multiplier }).is_ok();
+        let mut tie = |kind, along, multiplier, unit| ties.push(Tie { kind, along, multiplier, unit }).is_ok();
         if let Some(span) = &self.span {
             for axis in Self::outside(span) {
-                if !tie(Kind::Flat, axis, T::zero()) {
+                if !tie(Kind::Flat, axis, T::zero(), T::one()) {
                     return None;
                 }
             }
@@ -379,14 +380,15 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
             if primitive.is_empty() || !loaded {
                 continue;
             }
-            if weighed && !tie(Kind::Weight(index), Vector::zeros(), T::of(0.5)) {
+            if weighed && !tie(Kind::Weight(index), Vector::zeros(), T::of(0.5), T::one()) {
                 return None;
             }
             if part.sharpness <= zero {
                 for column in 0..3 {
                     let radius: Vector6<T> = primitive.disc().column(column).into_owned();
-                    let counts = norm(&radius) > T::zero();
-                    if counts && !tie(Kind::Tip(index, column), unit(&radius), T::zero()) {
+                    let length = norm(&radius);
+                    let kind = Kind::Tip(index, column);
+                    if length > T::zero() && !tie(kind, unit(&radius), T::zero(), self.size / length) {
                         return None;
                     }
                 }
@@ -515,7 +517,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
             at.ties.iter().find(|tie| tie.kind == Kind::Weight(index)).map_or(one, |tie| tie.multiplier)
         };
         let overdrawn = |index: usize| {
-            let y = tip(&at.ties, index, self.set.contributions());
+            let y = tip(&at.ties, index);
             y.is_some_and(|y| !(norm(&y) < weight(index) * (one - strict)))
         };
         let bad = |tie: &Tie<T>| match tie.kind {
@@ -552,7 +554,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
                 continue;
             }
             let loaded = weighed || !l1 && part.value > room;
-            let tip = tip(&at.ties, index, self.set.contributions());
+            let tip = tip(&at.ties, index);
             if !loaded || tip.is_none() && !(part.sharpness > strict) {
                 return Err(None);
             }
