@@ -142,7 +142,7 @@ struct Tally {
 }
 
 /// Random grasps, every kind of parameter of every contact.
-fn compare(seed: u64, rounds: usize, joints: &dyn Fn(&mut Dice) -> Option<usize>) -> Tally {
+fn compare(seed: u64, rounds: usize, relative: f64, joints: &dyn Fn(&mut Dice) -> Option<usize>) -> Tally {
     let mut dice = Dice::new(seed);
     let mut memory = Workspace::<f64, 6, 4096, 4096>::new();
     let mut tally = Tally::default();
@@ -162,7 +162,7 @@ fn compare(seed: u64, rounds: usize, joints: &dyn Fn(&mut Dice) -> Option<usize>
         let norm = dice.pick(&[Norm::L1, Norm::LInf]);
         let set = WrenchSet::new(primitives, norm);
         let (name, q) = gauges(&mut dice).swap_remove(round % 5);
-        let options = Options { relative: 1e-2, ..Options::default() };
+        let options = Options { relative, ..Options::default() };
         let answer = memory.solver().solve(&set, &*q, &options);
         if !(answer.lower > 1e-3) {
             continue;
@@ -171,6 +171,11 @@ fn compare(seed: u64, rounds: usize, joints: &dyn Fn(&mut Dice) -> Option<usize>
         let refined = Refined::new(&set, &*q, &answer);
         if let Some(kink) = refined.kink {
             println!("{round} {name} {norm:?} m {m} soft {soft}: {kink:?} {:?} [{} {}]", answer.outcome, answer.lower, answer.upper);
+            for (i, p) in set.contributions().iter().enumerate() { let u = &answer.direction; println!("   {i} h {:.3e} tip {:.3e}", p.value(u), p.disc().tr_mul(u).norm()); }
+            let mut v = answer.direction;
+            for _ in 0..100 { let (t, n) = ray(&grasp, &frame, norm, &q.mapping(&v).unwrap()).unwrap(); v = n; if q.vertex_count() > 0 { println!("t {t}"); break; } }
+            println!("polar {} of {}", set.value(&v)/q.value(&v).unwrap(), answer.upper);
+            for (i, p) in set.contributions().iter().enumerate() { let u = &v; println!("   {i} h {:.3e} tip {:.3e}", p.value(u), p.disc().tr_mul(u).norm()); }
             tally.degenerate += 1;
             continue;
         }
@@ -229,6 +234,16 @@ fn compare(seed: u64, rounds: usize, joints: &dyn Fn(&mut Dice) -> Option<usize>
 
 #[test]
 fn passive() {
-    let tally = compare(1, 60, &|_| None);
-    assert!(tally.smooth > 20);
+    for relative in [1e-2, 1e-3, 1e-4] {
+        let tally = compare(1, 60, relative, &|_| None);
+        assert!(tally.smooth > 20);
+    }
+}
+
+#[test]
+fn active() {
+    for relative in [1e-2, 1e-3] {
+        let tally = compare(2, 100, relative, &|dice| Some(dice.pick(&[2, 3, 3, 4, 5])).filter(|_| dice.chance(0.8)));
+        assert!(tally.smooth > 20);
+    }
 }

@@ -20,7 +20,8 @@
 //! Which contacts are at a kink is guessed, from the widest notion of "is zero" to the narrowest, corrected by the signs of
 //! the multipliers, and then **verified**: an optimum is only called smooth when all inequalities hold strictly, the equations are
 //! regular, and h_W grows to second order along all that they leave free. Then u and the multipliers are unique, and follow the
-//! grasp smoothly (Fiacco, *Introduction to Sensitivity and Stability Analysis*, 1983): d has a gradient.
+//! grasp smoothly (Fiacco, *Introduction to Sensitivity and Stability Analysis*, 1983): d has a gradient. One irregular case is
+//! common and harmless: three hard fingers are weakest about the line through two of them, whose squeeze is then free.
 //!
 //! The Hessian of h_Q is taken from differences of its mapping s_Q: zero for polytopes, good to sqrt(roundoff) for others,
 //! which costs Newton's method nothing that counts, since the equations themselves are exact.
@@ -34,7 +35,9 @@ use super::span::Subspace;
 use super::wrench_set::{Norm, WrenchSet};
 use crate::answer::Answer;
 use crate::bounds::Bounds;
+use crate::plan::shoot::descend;
 use crate::qset::Gauge;
+use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector, finite, norm, unit};
 use crate::support::Support;
 
@@ -155,12 +158,13 @@ impl<'a, T: Real> Refined<'a, T> {
             return refined;
         }
         let Some(problem) = Problem::new(set, q, span, &answer.direction) else { return refined };
-        let Some(mut best) = problem.minimum(&answer.direction, answer.upper) else { return refined };
+        let Some(mut best) = problem.search(&answer.direction, answer.upper) else { return refined };
         if let Some(rival) = answer.rival {
             // Is it still one? What is not settled counts as a tie.
             let slack = best.ratio * T::count(1 << 20) * T::ROUNDOFF;
-            match problem.minimum(&rival, T::HUGE) {
+            match problem.search(&rival, T::HUGE) {
                 Some(other) if other.ratio > best.ratio + slack => refined.answer.rival = None,
+                Some(other) if norm(&(other.u - best.u)) <= T::ROUNDOFF.root() => refined.answer.rival = None,
                 Some(other) if other.ratio < best.ratio - slack => {
                     best = other;
                     refined.answer.rival = None;
@@ -331,7 +335,24 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         (gauge > T::zero() && ratio.finite()).then_some((ratio, gauge))
     }
 
-    /// The minimum near a direction that bounds d by `limit`.
+    /// The minimum near a direction that bounds d by `limit`; after some polar iterations if the direction is too coarse.
+    fn search(&self, near: &Vector6<T>, limit: T) -> Option<Minimum<T>> {
+        self.minimum(near, limit).or_else(|| self.minimum(&self.sharpened(near)?, limit))
+    }
+
+    fn sharpened(&self, near: &Vector6<T>) -> Option<Vector6<T>> {
+        if self.span.is_some() {
+            return None;
+        }
+        let options = Options { relative: T::ROUNDOFF.root(), ..Options::default() };
+        let (mut query, checked) = Query::new(self.set, self.q, T::zero(), options);
+        checked.and_then(|()| query.normalize()).ok()?;
+        query.support(near).ok()?;
+        descend(&mut query, near).ok()?;
+        Some(query.direction)
+    }
+
+    /// The minimum that Newton's method finds from here.
     fn minimum(&self, near: &Vector6<T>, limit: T) -> Option<Minimum<T>> {
         let slack = T::one() + T::count(1 << 8) * T::ROUNDOFF;
         let limit = limit.at_most(self.ratio(near)?.0) * slack;
@@ -484,6 +505,8 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
                     row[i] = if level { gradient[i] - at.d * share[i] } else { gradient[i] };
                 }
                 row[6] = if level { -share.dot(&at.u) } else { T::zero() };
+                // Where multipliers are not unique the step changes them least (proximal method of multipliers).
+                *row.get_mut(7 + k)? = -T::ROUNDOFF.root();
                 row[SIZE] = -*residual;
             }
             let step = eliminated(a)?;
@@ -568,6 +591,14 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         Ok(Minimum { u, ratio, ties: at.ties, support, sharp: self.is_sharp(&u) })
     }
 
+    /// Are there two hard contacts at rest, h_i(u) = 0 at a tip? Then u turns about the line through both; a squeeze along it
+    /// balances itself, and how much of it there is does not matter: no change of theirs does work on it.
+    fn has_squeeze(&self, ties: &[Tie<T>]) -> bool {
+        let columns = |index: usize| ties.iter().filter(|t| matches!(t.kind, Kind::Tip(i, _) if i == index)).count();
+        let at_rest = |tie: &&Tie<T>| matches!(tie.kind, Kind::Weight(index) if columns(index) == 2);
+        self.set.norm() == Norm::LInf && ties.iter().filter(at_rest).count() == 2
+    }
+
     /// The second-order condition: with P the projection on the directions that the equations, and the length of u, leave
     /// free, P H P is positive on them.
     fn grows(&self, at: &Iterate<T>) -> Option<bool> {
@@ -584,8 +615,10 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
                 rank += 1;
             }
         }
-        // For L1 the balance itself is a combination of the gradients that vanishes; there must be no other.
-        if rank + usize::from(l1) != rows.len() {
+        // For L1 the balance itself is a combination of the gradients that vanishes; else only a squeeze between two
+        // hard contacts at rest may be one.
+        let excess = rows.len().checked_sub(rank + usize::from(l1))?;
+        if excess > usize::from(self.has_squeeze(&at.ties)) {
             return Some(false);
         }
         let curved = free * hessian * free;
