@@ -51,6 +51,7 @@ const CORRECTIONS: usize = 4;
 
 type Vector6<T> = Vector<T, 6>;
 type Matrix6<T> = SMatrix<T, 6, 6>;
+type Ties<T> = Vec<Tie<T>, TIES>;
 
 /// Why an optimum has no gradient, or none that could be told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +106,7 @@ pub struct Refined<'a, T> {
     /// Why there is no gradient; `None`: there is one.
     pub kink: Option<Kink>,
     set: WrenchSet<'a, T>,
-    ties: Vec<Tie<T>, TIES>,
+    ties: Ties<T>,
 }
 
 /// An equation that holds at the minimiser, and its multiplier.
@@ -134,7 +135,7 @@ enum Kind {
 struct Minimum<T> {
     u: Vector6<T>,
     ratio: T,
-    ties: Vec<Tie<T>, TIES>,
+    ties: Ties<T>,
     support: Vector6<T>,
     sharp: bool,
 }
@@ -172,6 +173,7 @@ impl<'a, T: Real> Refined<'a, T> {
                 _ => {}
             }
         }
+        refined.answer.rival = refined.answer.rival.or_else(|| problem.mirror_image(&best.u));
         refined.kink = match refined.answer.rival {
             Some(_) => Some(Kink::Rival),
             None if !best.sharp => Some(Kink::Gauge),
@@ -258,7 +260,7 @@ impl<T: Real> Part<T> {
 struct Iterate<T> {
     u: Vector6<T>,
     d: T,
-    ties: Vec<Tie<T>, TIES>,
+    ties: Ties<T>,
 }
 
 /// The problem in units of its own size: W divided by `size`, Q by `gauge`.
@@ -317,6 +319,14 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         Some(if self.q.vertex_count() > 0 { Matrix6::zeros() } else { symmetric })
     }
 
+    /// Another minimiser, where W and Q are their own mirror images and u is not. (The solver looks at one of them.)
+    fn mirror_image(&self, u: &Vector6<T>) -> Option<Vector6<T>> {
+        let image = |bits: u8| Vector6::from_fn(|i, _| if bits >> i & 1 == 1 { -u[i] } else { u[i] });
+        let differs = |bits: &u8| norm(&(image(*bits) - u)) > T::ROUNDOFF.root();
+        let is_image = |bits: &u8| self.q.mirrored(*bits) && self.set.mirrored(*bits);
+        (1..64).filter(differs).find(is_image).map(image)
+    }
+
     /// Does one point of Q alone attain h_Q near u?
     fn is_sharp(&self, u: &Vector6<T>) -> bool {
         let h = T::ROUNDOFF.root();
@@ -369,8 +379,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
             tried = count;
             for _ in 0..CORRECTIONS {
                 let Some(ties) = guess.take() else { break };
-                let Some(at) = self.newton(near, ties) else { break };
-                match self.verified(&at, limit) {
+                match self.balanced(near, ties, limit) {
                     Ok(minimum) => return Some(minimum),
                     Err(better) => guess = better,
                 }
@@ -379,13 +388,33 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         None
     }
 
+    /// The minimum that has these ties; otherwise the ties without those that want to be inequalities. Newton's method keeps what
+    /// there is of a free squeeze, so the weights that it starts from choose it.
+    fn balanced(&self, near: &Vector6<T>, ties: Ties<T>, limit: T) -> Result<Minimum<T>, Option<Ties<T>>> {
+        let squeezes = if self.has_squeeze(&ties) { 10 } else { 1 };
+        let mut better = None;
+        for squeeze in 0..squeezes {
+            let weight = T::count(1 + (2 * squeeze + 9) % 20) / T::count(20);
+            let mut start = ties.clone();
+            for tie in &mut start {
+                tie.multiplier = if let Kind::Weight(_) = tie.kind { weight } else { T::zero() };
+            }
+            let Some(at) = self.newton(near, start) else { break };
+            match self.verified(&at, limit) {
+                Ok(minimum) => return Ok(minimum),
+                Err(rest) => better = better.or(rest),
+            }
+        }
+        Err(better)
+    }
+
     /// The equations that hold near u when `zero` counts as zero.
-    fn guess(&self, u: &Vector6<T>, zero: T) -> Option<Vec<Tie<T>, TIES>> {
+    fn guess(&self, u: &Vector6<T>, zero: T) -> Option<Ties<T>> {
         let mut ties = Vec::new();
-        let mut tie = |kind, along, multiplier, unit| ties.push(Tie { kind, along, multiplier, unit }).is_ok();
+        let mut tie = |kind, along, unit| ties.push(Tie { kind, along, multiplier: T::zero(), unit }).is_ok();
         if let Some(span) = &self.span {
             for axis in Self::outside(span) {
-                if !tie(Kind::Flat, axis, T::zero(), T::one()) {
+                if !tie(Kind::Flat, axis, T::one()) {
                     return None;
                 }
             }
@@ -401,7 +430,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
             if primitive.is_empty() || !loaded {
                 continue;
             }
-            if weighed && !tie(Kind::Weight(index), Vector::zeros(), T::of(0.5), T::one()) {
+            if weighed && !tie(Kind::Weight(index), Vector::zeros(), T::one()) {
                 return None;
             }
             if part.sharpness <= zero {
@@ -409,7 +438,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
                     let radius: Vector6<T> = primitive.disc().column(column).into_owned();
                     let length = norm(&radius);
                     let kind = Kind::Tip(index, column);
-                    if length > T::zero() && !tie(kind, unit(&radius), T::zero(), self.size / length) {
+                    if length > T::zero() && !tie(kind, unit(&radius), self.size / length) {
                         return None;
                     }
                 }
@@ -476,7 +505,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
     }
 
     /// Newton's method for u, d and the multipliers, in the plane u . near = 1.
-    fn newton(&self, near: &Vector6<T>, ties: Vec<Tie<T>, TIES>) -> Option<Iterate<T>> {
+    fn newton(&self, near: &Vector6<T>, ties: Ties<T>) -> Option<Iterate<T>> {
         let (ratio, _) = self.ratio(near)?;
         let mut at = Iterate { u: *near, d: ratio / self.size * self.gauge, ties };
         let l1 = self.set.norm() == Norm::L1;
@@ -532,13 +561,12 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
 
     /// The minimum, if it is one with strict inequalities; otherwise the equations without those that want to be
     /// inequalities.
-    fn verified(&self, at: &Iterate<T>, limit: T) -> Result<Minimum<T>, Option<Vec<Tie<T>, TIES>>> {
+    fn verified(&self, at: &Iterate<T>, limit: T) -> Result<Minimum<T>, Option<Ties<T>>> {
         let strict = T::ROUNDOFF.root();
         let l1 = self.set.norm() == Norm::L1;
         let (zero, one) = (T::zero(), T::one());
-        let weight = |index: usize| {
-            at.ties.iter().find(|tie| tie.kind == Kind::Weight(index)).map_or(one, |tie| tie.multiplier)
-        };
+        let weight =
+            |index: usize| at.ties.iter().find(|tie| tie.kind == Kind::Weight(index)).map_or(one, |tie| tie.multiplier);
         let overdrawn = |index: usize| {
             let y = tip(&at.ties, index);
             y.is_some_and(|y| !(norm(&y) < weight(index) * (one - strict)))
@@ -551,10 +579,13 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         };
         if at.ties.iter().any(bad) {
             let mut rest = Vec::new();
-            let freed = |tie: &Tie<T>| matches!(tie.kind, Kind::Weight(i) | Kind::Tip(i, _)
-                if at.ties.iter().any(|other| other.kind == Kind::Weight(i) && bad(other) && !(other.multiplier > strict)));
+            let freed = |tie: &Tie<T>| {
+                matches!(tie.kind, Kind::Weight(i) | Kind::Tip(i, _)
+                if at.ties.iter().any(|other| other.kind == Kind::Weight(i) && bad(other) && !(other.multiplier > strict)))
+            };
             for tie in at.ties.iter().filter(|tie| !bad(tie) && !freed(tie)) {
-                let _ = rest.push(Tie { multiplier: if let Kind::Weight(_) = tie.kind { T::of(0.5) } else { zero }, ..*tie });
+                let _ = rest
+                    .push(Tie { multiplier: if let Kind::Weight(_) = tie.kind { T::of(0.5) } else { zero }, ..*tie });
             }
             return Err(Some(rest));
         }
@@ -646,8 +677,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
     /// Writes the minimum into the answer.
     fn conclude(&self, minimum: &Minimum<T>, answer: &mut Answer<T, 6>) {
         let Ok(gauge) = self.q.value(&minimum.u) else { return };
-        let bounds =
-            Bounds { support_error: self.set.error(), radius: T::zero(), dimension: 6, unknown_extent: false };
+        let bounds = Bounds { support_error: self.set.error(), radius: T::zero(), dimension: 6, unknown_extent: false };
         let height = self.set.value(&minimum.u);
         let upper = bounds.upper(height, bounds.margin(self.size), gauge, self.q.error());
         // What the span's basis is off by is not known here.
