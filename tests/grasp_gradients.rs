@@ -5,6 +5,7 @@ mod common;
 mod grasp_common;
 
 use common::dice::Dice;
+use common::memory::Memory;
 use grasp_common::socp::ray;
 use grasp_common::vector;
 use nalgebra::SMatrix;
@@ -13,7 +14,7 @@ use qdist::grasp::{
     default_tolerance,
 };
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
-use qdist::{Options, Vector, Workspace};
+use qdist::{Options, Vector};
 
 type Grasp = Vec<HandContact<f64>>;
 
@@ -142,7 +143,7 @@ struct Tally {
 /// Random grasps, every kind of parameter of every contact.
 fn compare(seed: u64, rounds: usize, relative: f64, joints: &dyn Fn(&mut Dice) -> Option<usize>) -> Tally {
     let mut dice = Dice::new(seed);
-    let mut memory = Workspace::<f64, 6, 2048, 2048>::new();
+    let mut memory = Memory::new::<f64, 6>(4096, 4096);
     let mut tally = Tally::default();
     for round in 0..rounds {
         let m = 3 + dice.below(3);
@@ -161,7 +162,7 @@ fn compare(seed: u64, rounds: usize, relative: f64, joints: &dyn Fn(&mut Dice) -
         let set = WrenchSet::new(primitives, norm);
         let (name, q) = gauges(&mut dice).swap_remove(round % 5);
         let options = Options { relative, ..Options::default() };
-        let answer = memory.solver().solve(&set, &*q, &options);
+        let answer = memory.solver::<f64, 6>().solve(&set, &*q, &options);
         if !(answer.lower > 1e-3) {
             continue;
         }
@@ -244,9 +245,9 @@ fn soft(p: [f64; 3], n: [f64; 3]) -> HandContact<f64> {
 }
 
 fn refined<'a>(primitives: &'a [Primitive<f64>], norm: Norm, q: &dyn Gauge<f64, 6>) -> Refined<'a, f64> {
-    let mut memory = Workspace::<f64, 6, 1024, 1024>::new();
+    let mut memory = Memory::new::<f64, 6>(4096, 4096);
     let set = WrenchSet::new(primitives, norm);
-    let answer = memory.solver().solve_in_span(&set, q, &Options { relative: 1e-2, ..Options::default() });
+    let answer = memory.solver::<f64, 6>().solve_in_span(&set, q, &Options { relative: 1e-2, ..Options::default() });
     Refined::new(&set, q, &answer)
 }
 
@@ -360,8 +361,9 @@ fn other_answers() {
             })
             .collect();
         let set = WrenchSet::new(&narrow, Norm::LInf);
-        let mut memory = Workspace::<f32, 6, 1024, 1024>::new();
-        let answer = memory.solver().solve(&set, &Ball::unit(), &Options { relative: 1e-2, ..Options::default() });
+        let mut memory = Memory::new::<f32, 6>(4096, 4096);
+        let answer =
+            memory.solver::<f32, 6>().solve(&set, &Ball::unit(), &Options { relative: 1e-2, ..Options::default() });
         let narrow = Refined::new(&set, &Ball::unit(), &answer);
         if wide.kink.is_none() && narrow.kink.is_none() {
             compared += 1;
