@@ -388,24 +388,50 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
         None
     }
 
-    /// The minimum that has these ties; otherwise the ties without those that want to be inequalities. Newton's method keeps what
-    /// there is of a free squeeze, so the weights that it starts from choose it.
+    /// The minimum that has these ties; otherwise the ties without those that want to be inequalities.
     fn balanced(&self, near: &Vector6<T>, ties: Ties<T>, limit: T) -> Result<Minimum<T>, Option<Ties<T>>> {
-        let squeezes = if self.has_squeeze(&ties) { 10 } else { 1 };
-        let mut better = None;
-        for squeeze in 0..squeezes {
-            let weight = T::count(1 + (2 * squeeze + 9) % 20) / T::count(20);
-            let mut start = ties.clone();
-            for tie in &mut start {
+        let start = |weight: T| {
+            let mut ties = ties.clone();
+            for tie in &mut ties {
                 tie.multiplier = if let Kind::Weight(_) = tie.kind { weight } else { T::zero() };
             }
-            let Some(at) = self.newton(near, start) else { break };
-            match self.verified(&at, limit) {
-                Ok(minimum) => return Ok(minimum),
-                Err(rest) => better = better.or(rest),
-            }
+            self.newton(near, ties)
+        };
+        let mut at = start(T::of(0.5)).ok_or(None)?;
+        if self.has_squeeze(&ties)
+            && let Some(other) = start(T::of(0.75))
+        {
+            at.ties = Self::squeezed(&at.ties, &other.ties);
         }
-        Err(better)
+        self.verified(&at, limit)
+    }
+
+    /// Newton's method keeps what there is of a free squeeze: two of its ends make the line of all balances. On it, the one that is
+    /// farthest inside of all inequalities, whose least distance is concave.
+    fn squeezed(one: &Ties<T>, other: &Ties<T>) -> Ties<T> {
+        let at = |s: T| {
+            let mut ties = one.clone();
+            ties.iter_mut().zip(other).for_each(|(a, b)| a.multiplier += (b.multiplier - a.multiplier) * s);
+            ties
+        };
+        let slack = |s: T| {
+            let ties = at(s);
+            let room = |tie: &Tie<T>| match tie.kind {
+                Kind::Weight(index) => {
+                    let friction = tip(&ties, index).map_or(T::zero(), |y| norm(&y));
+                    (tie.multiplier - friction).at_most(T::one() - tie.multiplier)
+                }
+                _ => T::HUGE,
+            };
+            ties.iter().fold(T::HUGE, |least, tie| least.at_most(room(tie)))
+        };
+        let (mut low, mut high) = (T::of(-64.0), T::of(64.0));
+        for _ in 0..64 {
+            let third = (high - low) / T::of(3.0);
+            let (a, b) = (low + third, high - third);
+            if slack(a) < slack(b) { low = a } else { high = b }
+        }
+        at(low)
     }
 
     /// The equations that hold near u when `zero` counts as zero.
