@@ -53,6 +53,7 @@ impl Numbers {
 
 /// What is changed, and along what.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant)] // a few at a time
 enum Change {
     Position([f64; 3]),
     Turn([f64; 3]),
@@ -286,42 +287,75 @@ fn symmetric_grasps_have_kinks() {
     }
 }
 
-/// Row (a1) of Table I: d = 0.41 / sqrt(0.41^2 + 1.3^2 + 1); W^a of its planar fingers is flat, and its gradient that in the span.
+/// Three planar fingers: W^a is flat, of forces in the plane and moments across. Its gradient against differences of d in the span, for changes
+/// that keep it; and the same grasp turned in space, where the span is not one of coordinate axes.
 #[test]
 fn planar_fingers() {
-    let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
     let planar = Jacobian::new([&[1.0, 0.4], &[0.3, 0.9], &[0.0, 0.0], &[0.0, 0.0]]).unwrap();
-    let y = Vector::from([0.0, 1.0, 0.0]);
-    let finger = |x: f64, mu: f64| {
-        let n = Vector::from([-x.signum(), 0.0, 0.0]);
-        let contact = Contact::new(Vector::from([x, 0.0, 0.0]), n, Friction::Soft { mu, mus: 0.2 }).unwrap();
-        HandContact { contact: contact.with_tangents(y, n.cross(&y)).unwrap(), jacobian: Some(planar) }
+    let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
+    let places = [(0.1, 1.0, 0.5, 0.1), (2.0, 0.8, 0.6, -0.2), (4.1, 1.2, 0.4, 0.15)];
+    // Angle, radius, friction and tilt of the normal of each finger.
+    let hand = |places: &[(f64, f64, f64, f64); 3], turn: &nalgebra::Rotation3<f64>| -> Grasp {
+        let finger = |&(angle, radius, mu, tilt): &(f64, f64, f64, f64)| {
+            let at = |a: f64| turn * Vector::from([a.cos(), a.sin(), 0.0]);
+            let (n, z) = (-at(angle + tilt), turn * Vector::from([0.0, 0.0, 1.0]));
+            let contact = Contact::new(at(angle) * radius, n, Friction::Soft { mu, mus: 0.2 }).unwrap();
+            HandContact { contact: contact.with_tangents(z.cross(&n), z).unwrap(), jacobian: Some(planar) }
+        };
+        places.iter().map(finger).collect()
     };
-    let ellipse = EllipsoidGauge::new(Vector::from([1.0, 1.1, 1.0, 1.0, 1.0, 0.9]), SMatrix::identity()).unwrap();
-    let at = |mu: f64, x: f64| {
-        let hand = [finger(-0.75, 0.2), finger(x, mu)];
-        let mut out = [Primitive::empty(); 2];
-        let primitives = active_wrenches(&hand, &frame, default_tolerance(), &mut out).unwrap();
-        let refined = refined(primitives, Norm::LInf, &ellipse);
-        assert_eq!(refined.answer.dimension, 3);
-        let gradient = refined.gradient(1, &hand[1], &frame, default_tolerance()).unwrap();
-        (refined.kink, refined.answer.gauge, refined.set().value(&refined.answer.direction), gradient)
-    };
-    let d = |mu: f64, x: f64| {
-        let (_, gauge, height, _) = at(mu, x);
-        height / gauge
-    };
-    let (mu, x, h) = (0.23, 1.3, 1e-5);
-    let (kink, _, _, gradient) = at(mu, x);
-    // The mirror image of the weakest direction is as weak: a rival; both have the same change with mu and x.
-    match (kink, gradient) {
-        (None, Some(gradient)) => {
-            let by_mu = (d(mu + h, x) - d(mu - h, x)) / (2.0 * h);
-            let by_x = (d(mu, x + h) - d(mu, x - h)) / (2.0 * h);
-            assert!((gradient.mu - by_mu).abs() < 1e-6, "{} {by_mu}", gradient.mu);
-            assert!((gradient.position[0] - by_x).abs() < 1e-6, "{} {by_x}", gradient.position);
+    let still = nalgebra::Rotation3::identity();
+    let ellipse = EllipsoidGauge::new(Vector::from([1.0, 1.3, 1.0, 1.0, 1.0, 0.7]), SMatrix::identity()).unwrap();
+    for norm in [Norm::L1, Norm::LInf] {
+        for q in [&Ball::unit() as &dyn Gauge<f64, 6>, &ellipse] {
+            let at = |places: &[(f64, f64, f64, f64); 3], turn: &nalgebra::Rotation3<f64>| {
+                let hand = hand(places, turn);
+                let mut out = [Primitive::empty(); 3];
+                let primitives = active_wrenches(&hand, &frame, default_tolerance(), &mut out).unwrap();
+                let refined = refined(primitives, norm, q);
+                assert_eq!((refined.kink, refined.answer.dimension), (None, 3));
+                let d = refined.set().value(&refined.answer.direction) / refined.answer.gauge;
+                // No direction of the plane is weaker.
+                for i in 0..2000 {
+                    let (z, a) = (1.0 - f64::from(i) / 1000.0, f64::from(i) * 2.4);
+                    let r = (1.0 - z * z).max(0.0).sqrt();
+                    let (f, m) =
+                        (turn * Vector::from([r * a.cos(), r * a.sin(), 0.0]), turn * Vector::from([0.0, 0.0, z]));
+                    let u = Vector::from([f.x, f.y, f.z, m.x, m.y, m.z]);
+                    assert!(refined.set().value(&u) / q.value(&u).unwrap() >= d * (1.0 - 1e-12));
+                }
+                let gradients: Vec<_> = (0..3)
+                    .map(|i| refined.gradient(i, &hand[i], &frame, default_tolerance()).unwrap().unwrap())
+                    .collect();
+                (d, gradients)
+            };
+            let (_, gradients) = at(&places, &still);
+            for i in 0..3 {
+                let (angle, radius, _, _) = places[i];
+                let g = &gradients[i];
+                let out = Vector::from([angle.cos(), angle.sin(), 0.0]);
+                let along = Vector::from([-angle.sin(), angle.cos(), 0.0]) * radius;
+                let expected = [g.position.dot(&along) + g.rotation.z, g.position.dot(&out), g.mu, g.rotation.z];
+                for (k, expected) in expected.into_iter().enumerate() {
+                    let change = |h: f64| {
+                        let mut new = places;
+                        let (angle, radius, mu, tilt) = &mut new[i];
+                        *[angle, radius, mu, tilt][k] += h;
+                        at(&new, &still).0
+                    };
+                    let h = 1e-5;
+                    let difference = (change(h) - change(-h)) / (2.0 * h);
+                    assert!((expected - difference).abs() < 1e-7, "{norm:?} {i} {k} {expected} {difference}");
+                }
+            }
+            if q.ball_radius().is_some() {
+                let turn = nalgebra::Rotation3::new(Vector::from([0.3, -1.1, 0.6]));
+                let (_, turned) = at(&places, &turn);
+                for (a, b) in gradients.iter().zip(&turned) {
+                    assert!((turn * a.position - b.position).norm() < 1e-9 && (a.mu - b.mu).abs() < 1e-9);
+                }
+            }
         }
-        (kink, _) => assert_eq!(kink, Some(Kink::Rival)),
     }
 }
 

@@ -60,6 +60,12 @@
 //! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat:
 //! [`Subspace`] finds the smallest subspace R that contains it.
 //!
+//! # Beside d
+//!
+//! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
+//!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
+//! * [`linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//!
 //! # What is not modelled
 //!
 //! * Compliance and dynamics: links, fingertips and object are rigid and at rest.
@@ -84,10 +90,13 @@ mod gradient;
 mod hand;
 mod jacobian;
 mod linearized;
+mod minimum;
+mod newton;
 mod primitive;
 mod refine;
 mod span;
 mod svd;
+mod ties;
 mod wrench_set;
 
 pub use contact::{Contact, ContactError, Friction, GraspError};
