@@ -396,6 +396,9 @@ fn bad_input_is_named() {
     }
     assert_eq!(error(&soft, Layout::Inscribed { sides: 19 }), Some(ContactError::Room));
     assert_eq!(error(&soft, Layout::Inscribed { sides: 18 }), None);
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        assert_eq!(error(&soft, Layout::GraspIt { millimetre: bad }), Some(ContactError::Frame));
+    }
     for bad in [f64::NAN, f64::INFINITY] {
         assert_eq!(error(&soft, Layout::DexNet { sides: 8, finger_radius: bad }), Some(ContactError::Wrench));
         assert!(Preset::dex_net(V3::zeros(), 1.0, 8, bad).is_err() && Preset::frogger(4, bad).is_err());

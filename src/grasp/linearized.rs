@@ -3,7 +3,7 @@
 //! Grasp planners commonly replace the friction cone by a pyramid of m edges and compute d from the facets of the hull of
 //! all edges. That is d of another, smaller set, and by how much smaller is not known to them. Here a pyramid is a
 //! [`Contribution`] like any other, so the same solver brackets *their* number, and beside it stands the exact one of the cone.
-//! An inscribed pyramid bounds d from below; a circumscribed one from above; the ratio of the two is that of the polygon, cos(π/m).
+//! An inscribed pyramid bounds d from below; a circumscribed one from above. For hard contacts the friction of one is cos(π/m) of that of the other.
 //!
 //! A [`Preset`] is what one tool does, as read in its source: where moments are taken and what they are divided by, how the tangents
 //! lie, how many edges there are and how long, and the norm. Q is the unit ball in all of them.
@@ -25,10 +25,10 @@
 //! * FRoGGeR (alberthli/frogger): `grasping.py` `compute_gOCs`, `compute_primitive_forces`; `metrics.py` `ferrari_canny_L1`,
 //!   `min_weight_lp`; `robots/robot_core.py` `_finish_ineq_cons`.
 //!
-//! Their L1 hulls do not contain {0} by definition. That is the same set where the grasp is closed, and d = 0 here is a 0 or -1 there.
+//! Their L1 hulls do not contain {0} by definition. That is the same set where the grasp is closed; where it is not, d is 0 here, 0 in
+//! Dex-Net, -1 in FRoGGeR.
 //! Dex-Net adds a regularizer of 1e-10 to the squared distance of each facet: its number is sqrt(d^2 + 1e-10 |v|^2) with convex
-//! weights v, at most 1e-5 above d. Qhull merges facets, which moves their numbers by some 1e-15 of the size, or by what the tool allows it
-//! (GraspIt! lets it merge facets 1e-4 radians apart).
+//! weights v, at most 1e-5 above d. GraspIt! lets Qhull merge facets whose centres are within 1e-4 of each other's planes (`C-0.0001`).
 //!
 //! **FRoGGeR's min-weight metric** is a ray. It is the largest l with 0 = Σ α_j w_j, Σ α_j = 1, α_j >= l, over all N edges, times N: with w the mean
 //! of the edges and t the largest number with -t w in their hull, `N l = t / (1 + t)`. So t is d for Q = [`Segment`] from 0 to -w
@@ -132,7 +132,10 @@ impl<T: Real> Layout<T> {
                 let (level, rise) = (latitude.cos(), latitude.sin());
                 let height = if mu > zero { mus / (mu * millimetre) } else { one };
                 // |(c, s, rise / height)|: from the sphere out to the ellipsoid, then back to units of its axes.
-                let up = if height > zero { rise / height } else { zero };
+                if !(height > zero) {
+                    return (one, if rise.is_zero() { [c, s, zero] } else { [zero; 3] });
+                }
+                let up = rise / height;
                 let length = (level * level + up * up).root();
                 if length > zero {
                     (one, [c * level / length, s * level / length, up / length])
@@ -157,7 +160,8 @@ impl<T: Real> Layout<T> {
 /// let mut memory = [[0.0; 6]; 4];
 /// let pyramid = PyramidalCone::new(&contact, &frame, &Layout::Inscribed { sides: 4 }, &mut memory)?;
 /// let u = Vector::from([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
-/// assert_eq!(pyramid.support(&u).unwrap().dot(&u), 0.5); // the cone reaches 0.5 sqrt(2)
+/// let reach: f64 = pyramid.support(&u).unwrap().dot(&u);
+/// assert!((reach - 0.5).abs() < 1e-15); // the cone reaches 0.5 sqrt(2)
 /// # Ok::<(), ContactError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -177,13 +181,17 @@ impl<'a, T: Real> PyramidalCone<'a, T> {
     ///
     /// # Errors
     /// [`ContactError::Room`]: there are fewer places than [`edges`](Layout::edges), or fewer than 3 sides.
-    /// [`ContactError::Wrench`]: a coordinate is not finite or too large; a millimetre or a finger radius that is no length.
+    /// [`ContactError::Wrench`]: a coordinate is not finite or too large, or a finger radius is no length.
+    /// [`ContactError::Frame`]: a millimetre that is not a positive number of usual size.
     pub fn new(
         contact: &Contact<T>,
         frame: &WrenchFrame<T>,
         layout: &Layout<T>,
         memory: &'a mut [[T; 6]],
     ) -> Result<Self, ContactError> {
+        if let Layout::GraspIt { millimetre } = *layout {
+            WrenchFrame::new(*frame.reference(), millimetre)?;
+        }
         let count = layout.edges(contact.friction());
         let edges = memory.get_mut(..count).filter(|edges| edges.len() >= 3).ok_or(ContactError::Room)?;
         let (map, radii) = (frame.contact_map(contact), frame.friction_radii(contact));

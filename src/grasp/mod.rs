@@ -64,7 +64,7 @@
 //!
 //! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
 //!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
-//! * [`linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//! * [`mod@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
 //!
 //! # What is not modelled
 //!
@@ -89,7 +89,7 @@ mod frame;
 mod gradient;
 mod hand;
 mod jacobian;
-mod linearized;
+pub mod linearized;
 mod minimum;
 mod newton;
 mod primitive;
