@@ -424,7 +424,7 @@ fn other_answers() {
     assert!(compared > 8, "{compared}");
 }
 
-/// Neither units nor the size of the grasp matter: millimetres and millinewtons.
+/// Neither units nor the size of the grasp matter: millimetres, millinewtons, and forces near the ends of the format.
 #[test]
 fn units() {
     let mut dice = Dice::new(6);
@@ -453,6 +453,10 @@ fn units() {
                 .collect::<Option<Vec<_>>>()
         };
         let (Some(a), Some(b)) = (gradients(1.0, 1.0), gradients(1e3, 1e6)) else { continue };
+        for force in [1e-100, 1e100] {
+            let c = gradients(1.0, force).unwrap();
+            a.iter().zip(&c).for_each(|(a, c)| assert!((a.mu - c.mu / force).abs() < 1e-8));
+        }
         closed += 1;
         for (a, b) in a.iter().zip(&b) {
             assert!((a.position - b.position * 1e-3).norm() < 1e-8, "{} {}", a.position, b.position);
