@@ -60,6 +60,12 @@
 //! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat:
 //! [`Subspace`] finds the smallest subspace R that contains it.
 //!
+//! # Beside d
+//!
+//! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
+//!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
+//! * [`mod@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//!
 //! # What is not modelled
 //!
 //! * Compliance and dynamics: links, fingertips and object are rigid and at rest.
@@ -81,19 +87,28 @@
 mod closure;
 mod contact;
 mod frame;
+mod gradient;
 mod hand;
 mod jacobian;
+pub mod linearized;
+mod minimum;
+mod newton;
 mod primitive;
+mod refine;
 mod span;
 mod svd;
+mod ties;
 mod wrench_set;
 
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use frame::WrenchFrame;
+pub use gradient::ContactGradient;
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
+pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, opposed_mean};
 pub use primitive::Primitive;
+pub use refine::{Kink, Refined, Share};
 pub use span::Subspace;
 pub use wrench_set::{Contribution, Norm, WrenchSet};
 

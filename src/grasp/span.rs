@@ -80,6 +80,11 @@ impl<T: Real> Subspace<T> {
         self.basis.get(..self.dimension).unwrap_or(&self.basis)
     }
 
+    /// An orthonormal basis of the complement of R.
+    pub(super) fn complement(&self) -> &[[T; 6]] {
+        self.basis.get(self.dimension..).unwrap_or(&[])
+    }
+
     /// The basis as columns of a matrix R, 6 x K; `None` unless K is the dimension. A point x of R^K is the wrench R x.
     pub fn matrix<const K: usize>(&self) -> Option<SMatrix<T, 6, K>> {
         let columns: &[[T; 6]; K] = self.basis().try_into().ok()?;
