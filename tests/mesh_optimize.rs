@@ -11,7 +11,7 @@ use common::dice::Dice;
 use nalgebra::{Isometry3, Matrix3, Matrix6, Point3, UnitQuaternion, Vector3, Vector6};
 use qdist::mesh::mass::MassProperties;
 use qdist::mesh::metric::{BodyFrame, Disp, Metric, Sigma};
-use qdist::mesh::optimize::{Contact, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions, Twist};
+use qdist::mesh::optimize::{Constraint, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions, Twist};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -35,7 +35,7 @@ struct Problem {
     vertices: Vec<Point3<f64>>,
     from: Isometry3<f64>,
     at: Isometry3<f64>,
-    contacts: Vec<Contact>,
+    contacts: Vec<Constraint>,
     options: StepOptions,
 }
 
@@ -48,10 +48,10 @@ fn problem(dice: &mut Dice, corners: usize, contacts: usize, scale: f64, trust: 
     let from = pose(dice, scale);
     let (length, angle) = (dice.range(0.0, 0.3) * scale, dice.range(0.0, 0.4));
     let at = near(dice, &from, length, angle);
-    let mut list: Vec<Contact> = Vec::new();
+    let mut list: Vec<Constraint> = Vec::new();
     for _ in 0..contacts {
         let point = at * vertices[dice.below(corners)];
-        let mut contact = Contact {
+        let mut contact = Constraint {
             point,
             normal: direction(dice),
             gap: if dice.chance(0.3) { 0.0 } else { dice.range(0.0, 0.1) * scale },
@@ -61,7 +61,7 @@ fn problem(dice: &mut Dice, corners: usize, contacts: usize, scale: f64, trust: 
                 contact = last;
             } else if dice.chance(0.2) {
                 let tilt = direction(dice) * dice.decade(-14.0, -2.0);
-                contact = Contact { normal: (last.normal + tilt).normalize(), ..last };
+                contact = Constraint { normal: (last.normal + tilt).normalize(), ..last };
             }
         }
         list.push(contact);
@@ -171,7 +171,7 @@ fn moved(problem: &Problem, step: &Step) -> f64 {
 
 /// The largest violation of a contact.
 fn violation(problem: &Problem, step: &Step) -> f64 {
-    let one = |c: &Contact| -c.gap - c.normal.dot(&step.twist.velocity(&c.point));
+    let one = |c: &Constraint| -c.gap - c.normal.dot(&step.twist.velocity(&c.point));
     problem.contacts.iter().map(one).fold(0.0, f64::max)
 }
 
@@ -347,15 +347,15 @@ fn a_metric_of_ones_own_that_does_not_see_rotations() {
     let free = metric.step(&from, &at, &[], &options, &mut memory).unwrap();
     assert!(free.value < 1e-12 && free.end == StepEnd::Optimal);
     // A contact away from the centre: turning about it is free, as far as the trust region goes.
-    let contact = Contact { point: Point3::new(1.0, 0.0, 0.5), normal: Vector3::z(), gap: 0.0 };
+    let contact = Constraint { point: Point3::new(1.0, 0.0, 0.5), normal: Vector3::z(), gap: 0.0 };
     let step = metric.step(&from, &at, &[contact], &options, &mut memory).unwrap();
     assert!(step.value < 1e-6 && violation_of(&contact, &step) < 1e-9, "{step:?}");
-    let centred = Contact { point: Point3::new(0.0, 0.0, 0.5), ..contact };
+    let centred = Constraint { point: Point3::new(0.0, 0.0, 0.5), ..contact };
     let step = metric.step(&from, &at, &[centred], &options, &mut memory).unwrap();
     assert!((step.value - 0.5).abs() < 1e-12);
 }
 
-fn violation_of(c: &Contact, step: &Step) -> f64 {
+fn violation_of(c: &Constraint, step: &Step) -> f64 {
     -c.gap - c.normal.dot(&step.twist.velocity(&c.point))
 }
 
@@ -364,13 +364,13 @@ fn pushing_a_penetrating_pose_out() {
     // A unit cube 0.1 deep in the floor, and in a wall: out along both normals, without turning.
     let corners: Vec<Point3<f64>> =
         (0..8).map(|k| Point3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2))).collect();
-    let contacts: Vec<Contact> = corners
+    let contacts: Vec<Constraint> = corners
         .iter()
         .flat_map(|&point| {
             [(Vector3::z(), point.z), (Vector3::x(), point.x)]
                 .into_iter()
                 .filter(|c| c.1 == 0.0)
-                .map(move |(normal, _)| Contact { point, normal, gap: -0.1 })
+                .map(move |(normal, _)| Constraint { point, normal, gap: -0.1 })
         })
         .collect();
     let disp = Disp::new(&corners).unwrap();
@@ -390,8 +390,8 @@ fn pushing_a_penetrating_pose_out() {
 
         // A ceiling 0.05 too low: half of it is left above and below, and nothing else gets worse.
         let ceiling =
-            corners.iter().filter(|p| p.z == 1.0).map(|&point| Contact { point, normal: -Vector3::z(), gap: 0.05 });
-        let both: Vec<Contact> = contacts.iter().copied().chain(ceiling).collect();
+            corners.iter().filter(|p| p.z == 1.0).map(|&point| Constraint { point, normal: -Vector3::z(), gap: 0.05 });
+        let both: Vec<Constraint> = contacts.iter().copied().chain(ceiling).collect();
         let mut memory = StepMemory::new(both.len());
         let step = metric.step(&here, &here, &both, &StepOptions::default(), &mut memory).unwrap();
         assert!(step.end == StepEnd::Infeasible && (step.violation - 0.025).abs() < 1e-6, "{step:?}");
@@ -440,7 +440,7 @@ fn steps_do_not_depend_on_frames() {
             contacts: p
                 .contacts
                 .iter()
-                .map(|c| Contact { point: world * c.point, normal: world * c.normal, gap: c.gap })
+                .map(|c| Constraint { point: world * c.point, normal: world * c.normal, gap: c.gap })
                 .collect(),
             options: p.options,
         };
@@ -475,7 +475,7 @@ fn bad_input_is_named() {
     let sigma = solid(&mut dice, 1.0);
     let mut memory = StepMemory::new(3);
     for metric in [&disp as &dyn Metric, &sigma] {
-        let mut step = |at: &Isometry3<f64>, contacts: &[Contact], options: &StepOptions| {
+        let mut step = |at: &Isometry3<f64>, contacts: &[Constraint], options: &StepOptions| {
             metric.step(&p.from, at, contacts, options, &mut memory)
         };
         let more = [p.contacts.clone(), p.contacts.clone()].concat();
@@ -491,9 +491,9 @@ fn bad_input_is_named() {
         }
         assert_eq!(step(&p.at, &[], &StepOptions { tolerance: 0.0, ..p.options }), Err(StepError::Options));
         // A contact without a normal says nothing, or cannot be met.
-        let none = Contact { normal: Vector3::zeros(), ..p.contacts[0] };
-        assert_eq!(step(&p.at, &[Contact { gap: 0.0, ..none }], &p.options).unwrap().end, StepEnd::Optimal);
-        let never = step(&p.at, &[Contact { gap: -0.1, ..none }], &p.options).unwrap();
+        let none = Constraint { normal: Vector3::zeros(), ..p.contacts[0] };
+        assert_eq!(step(&p.at, &[Constraint { gap: 0.0, ..none }], &p.options).unwrap().end, StepEnd::Optimal);
+        let never = step(&p.at, &[Constraint { gap: -0.1, ..none }], &p.options).unwrap();
         assert!(never.end == StepEnd::Infeasible && (never.violation - 0.1).abs() < 1e-9);
     }
 }
@@ -581,7 +581,7 @@ fn degenerate_contacts_are_solved_to_the_tolerance() {
         let normals = [0; 3].map(|_| direction(&mut dice));
         let small = dice.pick(&[0.0, 1e-12, 1e-9, 1e-3]);
         let count = dice.pick(&[1, 5, 20, 100, 300]);
-        let contacts: Vec<Contact> = (0..count)
+        let contacts: Vec<Constraint> = (0..count)
             .map(|k| {
                 let point = at * vertices[dice.below(corners)];
                 let side = if k % 2 == 0 { 1.0 } else { -1.0 };
@@ -593,7 +593,7 @@ fn degenerate_contacts_are_solved_to_the_tolerance() {
                     3 => ((normals[0] + tilt).normalize(), 0.01 * dice.signed()),
                     _ => (direction(&mut dice), small * dice.signed()),
                 };
-                Contact { point, normal, gap }
+                Constraint { point, normal, gap }
             })
             .collect();
         let trust = dice.pick(&[f64::INFINITY, 0.05, 1e-3]);

@@ -43,15 +43,19 @@
 mod bvh;
 pub mod certificate;
 pub mod check;
+mod depth;
 pub mod hull;
 pub mod mass;
 pub mod metric;
+mod model;
 pub mod optimize;
 pub mod proximity;
 mod surface;
 pub mod topology;
 
 pub use check::Report;
+pub use depth::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Walk, Watch};
+pub use model::{Model, ModelError};
 pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};
 pub use surface::{MAX_COORDINATE, Mesh, MeshError};
 pub use topology::{Edge, EdgeKind, Feature, Topology};

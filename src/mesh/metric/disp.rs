@@ -8,7 +8,7 @@
 use super::super::hull::{HullError, hull_vertices};
 use super::super::optimize::minimax::{self, Body, Field, stiffness};
 use super::super::optimize::quadratic::violation;
-use super::super::optimize::{Contact, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions};
+use super::super::optimize::{Constraint, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions};
 use super::{BodyFrame, Metric, prepare, quadratic_step};
 use core::fmt;
 use nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector3, Vector6};
@@ -220,7 +220,7 @@ impl Metric for Disp {
         &self,
         from: &Isometry3<f64>,
         at: &Isometry3<f64>,
-        contacts: &[Contact],
+        contacts: &[Constraint],
         options: &StepOptions,
         memory: &mut StepMemory,
     ) -> Result<Step, StepError> {

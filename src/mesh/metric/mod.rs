@@ -17,7 +17,7 @@ pub use sigma::Sigma;
 
 use super::optimize::project::End;
 use super::optimize::quadratic::{self, minimise};
-use super::optimize::{Contact, Linear, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions, Twist};
+use super::optimize::{Constraint, Linear, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions, Twist};
 use nalgebra::{Isometry3, Matrix3, Point3, SymmetricEigen, Vector3, Vector6};
 
 /// Where a body's motions are measured, in the body's own frame.
@@ -66,7 +66,7 @@ impl BodyFrame {
     }
 
     /// A contact as a constraint of y.
-    fn constraint(&self, axes: &Matrix3<f64>, about: &Point3<f64>, contact: &Contact) -> Linear {
+    fn constraint(&self, axes: &Matrix3<f64>, about: &Point3<f64>, contact: &Constraint) -> Linear {
         let force = axes.tr_mul(&contact.normal);
         let moment = axes.tr_mul(&(contact.point - about).cross(&contact.normal)) / self.radius;
         let normal = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
@@ -103,7 +103,7 @@ pub trait Metric {
         &self,
         from: &Isometry3<f64>,
         at: &Isometry3<f64>,
-        contacts: &[Contact],
+        contacts: &[Constraint],
         options: &StepOptions,
         memory: &mut StepMemory,
     ) -> Result<Step, StepError> {
@@ -117,7 +117,7 @@ pub trait Metric {
 fn prepare(
     frame: &BodyFrame,
     poses: [&Isometry3<f64>; 2],
-    contacts: &[Contact],
+    contacts: &[Constraint],
     options: &StepOptions,
     memory: &mut StepMemory,
 ) -> Result<(), StepError> {

@@ -29,7 +29,7 @@ pub(crate) mod quadratic;
 
 /// A contact as a constraint of a step: the motion of the moving body's point `point` along `normal` is at least `-gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct Constraint {
     /// Where, in the world.
     pub point: Point3<f64>,
     /// Unit vector from the fixed body to the moving one, in the world.

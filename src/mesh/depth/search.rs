@@ -1,0 +1,161 @@
+//! The state of one query: the best pose so far, the budget, and the order of things.
+
+use super::random::Random;
+use super::seeds::rays;
+use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Watch};
+use crate::mesh::metric::Metric;
+use crate::mesh::{Counters, Pair, Screw};
+use nalgebra::Isometry3;
+
+pub(super) struct Search<'s, 'm, 'w> {
+    pub pair: &'s mut Pair<'m>,
+    pub metric: &'s dyn Metric,
+    pub options: &'s DepthOptions<'s>,
+    watch: Option<Watch<'w>>,
+    /// The query's pose.
+    pub start: Isometry3<f64>,
+    pub random: Random,
+    /// A's diagonal: the unit of all lengths that are chosen.
+    pub size: f64,
+    /// The best free pose, and its distance from the start; infinite before there is one.
+    pub pose: Isometry3<f64>,
+    pub upper: f64,
+    pub lower: f64,
+    pub walks: u32,
+    /// Share of the work that is done.
+    fraction: f64,
+    stop: Option<Outcome>,
+    before: Counters,
+}
+
+fn total(c: &Counters) -> u64 {
+    c.collision + c.contact + c.distance
+}
+
+impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
+    pub fn new(
+        solver: &'s mut DepthSolver<'m>,
+        pose: &Isometry3<f64>,
+        metric: &'s dyn Metric,
+        options: &'s DepthOptions<'s>,
+        watch: Option<Watch<'w>>,
+    ) -> Self {
+        let before = solver.pair.counters();
+        Search {
+            size: solver.a.mesh().diagonal(),
+            pair: &mut solver.pair,
+            metric,
+            options,
+            watch,
+            start: *pose,
+            random: Random::new(options.seed),
+            pose: *pose,
+            upper: f64::INFINITY,
+            lower: 0.0,
+            walks: 0,
+            fraction: 0.0,
+            stop: None,
+            before,
+        }
+    }
+
+    pub fn run(mut self) -> MeshDepth {
+        let here = self.metric.distance(&self.start, &self.start);
+        if !(self.options.relative >= 0.0 && here.is_finite() && usable(&self.start)) {
+            return self.answer(Outcome::Invalid);
+        }
+        if !self.pair.collides(&self.start) {
+            self.upper = 0.0;
+            let distance = self.pair.distance(&self.start);
+            return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
+        }
+        for pose in self.options.poses {
+            self.offer_slid(pose);
+        }
+        rays::escape(&mut self);
+        if self.options.rays {
+            rays::cast(&mut self);
+        }
+        let outcome = match self.stop {
+            Some(outcome) => outcome,
+            None if self.upper == f64::INFINITY => Outcome::Stuck,
+            None if self.is_closed() => Outcome::Converged,
+            None => Outcome::Bounded,
+        };
+        self.answer(outcome)
+    }
+
+    fn is_closed(&self) -> bool {
+        self.upper - self.lower <= self.options.relative * self.upper
+    }
+
+    fn answer(&self, outcome: Outcome) -> MeshDepth {
+        let (now, before) = (self.pair.counters(), self.before);
+        MeshDepth {
+            outcome,
+            lower: self.lower,
+            upper: self.upper,
+            pose: self.pose,
+            distance: None,
+            solid: self.pair.has_inside(),
+            counters: Counters {
+                collision: now.collision - before.collision,
+                contact: now.contact - before.contact,
+                distance: now.distance - before.distance,
+            },
+            walks: self.walks,
+        }
+    }
+
+    /// Whether to go on. Asks the caller.
+    pub fn goes_on(&mut self) -> bool {
+        if self.stop.is_some() {
+            return false;
+        }
+        let queries = total(&self.pair.counters()) - total(&self.before);
+        let progress =
+            Progress { lower: self.lower, upper: self.upper, pose: &self.pose, fraction: self.fraction, queries };
+        if self.watch.as_mut().is_some_and(|watch| !watch(&progress)) {
+            self.stop = Some(Outcome::Interrupted);
+        } else if queries >= self.options.max_queries {
+            self.stop = Some(Outcome::Budget);
+        } else if self.is_closed() {
+            self.stop = Some(Outcome::Converged);
+        }
+        self.stop.is_none()
+    }
+
+    pub fn distance(&self, pose: &Isometry3<f64>) -> f64 {
+        self.metric.distance(&self.start, pose)
+    }
+
+    /// Takes a pose that is known to be free.
+    pub fn take(&mut self, pose: &Isometry3<f64>) {
+        let value = self.distance(pose);
+        if value < self.upper {
+            self.upper = value;
+            self.pose = *pose;
+        }
+    }
+
+    /// Takes a pose if it is free, after it has slid towards the start.
+    fn offer_slid(&mut self, pose: &Isometry3<f64>) {
+        if usable(pose) && self.goes_on() && !self.pair.collides(pose) {
+            let slid = self.slide(pose, 1e-6 * self.size);
+            self.take(&slid);
+        }
+    }
+
+    /// The last free pose on the way from a free one to the start, to a length.
+    pub fn slide(&mut self, free: &Isometry3<f64>, tolerance: f64) -> Isometry3<f64> {
+        let screw = Screw::new(&self.start, free);
+        let s = self.pair.bisect(&screw, 1.0, 0.0, tolerance);
+        screw.at(s)
+    }
+}
+
+/// Finite, and a rotation.
+fn usable(pose: &Isometry3<f64>) -> bool {
+    let norm = pose.rotation.quaternion().norm();
+    (norm - 1.0).abs() < 1e-6 && pose.translation.vector.iter().all(|x| x.abs() <= crate::mesh::MAX_COORDINATE)
+}

@@ -1,0 +1,3 @@
+//! Where walks begin.
+
+pub(super) mod rays;
