@@ -65,6 +65,10 @@
 //! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
 //!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
 //! * [`mod@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//! # Contact forces
+//!
+//! [`ForceSolver`] finds the smallest contact forces that resist one given wrench, in microseconds: the same question with a segment for
+//! Q, and the shares of all contacts as its answer.
 //!
 //! # What is not modelled
 //!
@@ -86,6 +90,8 @@
 
 mod closure;
 mod contact;
+mod force_solver;
+mod forces;
 mod frame;
 mod gradient;
 mod hand;
@@ -94,7 +100,9 @@ pub mod linearized;
 mod minimum;
 mod newton;
 mod primitive;
+mod program;
 mod refine;
+mod search;
 mod span;
 mod svd;
 mod ties;
@@ -102,6 +110,8 @@ mod wrench_set;
 
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
+pub use force_solver::ForceSolver;
+pub use forces::{ForceError, ForceOptions, ForceOutcome, Forces};
 pub use frame::WrenchFrame;
 pub use gradient::ContactGradient;
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
