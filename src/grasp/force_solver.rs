@@ -76,6 +76,16 @@ impl<T: Real> ForceSolver<T> {
         Self { known: Vec::new() }
     }
 
+    /// A solver that knows the directions of another one, [`known`](Self::known), for those who keep them as numbers; six at most.
+    pub fn knowing(directions: impl Iterator<Item = Vector<T, 6>>) -> Self {
+        Self { known: directions.take(6).collect() }
+    }
+
+    /// The directions whose points the last forces were made of.
+    pub fn known(&self) -> &[Vector<T, 6>] {
+        &self.known
+    }
+
     /// The smallest contact forces that keep the object in equilibrium with the `external` wrench: their `shares` sum up to -external (eq. 2).
     ///
     /// `external` is a wrench in the coordinates of the set ([`WrenchFrame::wrench`](super::WrenchFrame::wrench)): force, and
@@ -99,7 +109,8 @@ impl<T: Real> ForceSolver<T> {
         options: &ForceOptions<T>,
         shares: &mut [Vector<T, 6>],
     ) -> Result<Forces<T>, ForceError> {
-        let shares = check(set, external, options, shares)?;
+        check(external, options)?;
+        let shares = shares.get_mut(..set.contributions().len()).ok_or(ForceError::Room)?;
         shares.fill(Vector::zeros());
         let zero = T::zero();
         let mut forces = Forces {
@@ -168,13 +179,8 @@ impl<T: Real> ForceSolver<T> {
     }
 }
 
-/// The list of the shares, if everything is as it should be.
-fn check<'s, T: Real, C: Contribution<T>>(
-    set: &WrenchSet<'_, T, C>,
-    external: &Vector<T, 6>,
-    options: &ForceOptions<T>,
-    shares: &'s mut [Vector<T, 6>],
-) -> Result<&'s mut [Vector<T, 6>], ForceError> {
+/// Is everything but the room for the shares as it should be?
+pub(crate) fn check<T: Real>(external: &Vector<T, 6>, options: &ForceOptions<T>) -> Result<(), ForceError> {
     if !usable(external.iter()) {
         return Err(ForceError::Wrench);
     }
@@ -184,5 +190,5 @@ fn check<'s, T: Real, C: Contribution<T>>(
     if !(options.limit >= T::zero()) {
         return Err(ForceError::Limit);
     }
-    shares.get_mut(..set.contributions().len()).ok_or(ForceError::Room)
+    Ok(())
 }

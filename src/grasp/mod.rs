@@ -111,6 +111,8 @@ mod wrench_set;
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use force_solver::ForceSolver;
+#[cfg(feature = "capi")]
+pub(crate) use force_solver::check as check_forces;
 pub use forces::{ForceError, ForceOptions, ForceOutcome, Forces};
 pub use frame::WrenchFrame;
 pub use gradient::ContactGradient;
