@@ -6,7 +6,7 @@ use super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CAPACITY, QDIST_ERROR_CONTACT_CAP, QDIST_ERROR_CONTACT_FRICTION,
     QDIST_ERROR_CONTACT_JACOBIAN, QDIST_ERROR_CONTACT_NORMAL, QDIST_ERROR_CONTACT_POSITION,
     QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_NONFINITE,
-    QDIST_ERROR_TOLERANCE, qdist_status,
+    QDIST_ERROR_TOLERANCE, QDIST_ERROR_TORQUE_LIMIT, qdist_status,
 };
 use crate::grasp::{ContactError, ForceError, ForceOutcome, GraspError, Kink, Norm};
 use core::ffi::c_char;
@@ -132,6 +132,7 @@ pub(super) fn from_contact(error: ContactError) -> qdist_status {
         ContactError::Frame => QDIST_ERROR_FRAME,
         ContactError::Wrench => QDIST_ERROR_CONTACT_WRENCH,
         ContactError::Jacobian | ContactError::Coupling => QDIST_ERROR_CONTACT_JACOBIAN,
+        ContactError::TorqueLimit { .. } => QDIST_ERROR_TORQUE_LIMIT,
         ContactError::Tolerance => QDIST_ERROR_TOLERANCE,
         ContactError::Room => QDIST_ERROR_CAPACITY,
     }

@@ -24,10 +24,10 @@
 //!   contributions added to h_W(u) and that of u.w taken away, where w is what the shares exert. How far that is from equilibrium is
 //!   reported, too.
 
-use super::forces::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
+use super::super::usable;
+use super::super::wrench_set::{Contribution, WrenchSet};
 use super::search::Search;
-use super::usable;
-use super::wrench_set::{Contribution, WrenchSet};
+use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
 use crate::scalar::{Real, Vector, norm, unit};
 use crate::support::Failure;
 use heapless::Vec;

@@ -1,9 +1,9 @@
 //! One search for contact forces: scales the question, runs the linear program until something is decided, and makes shares, a bracket and an
 //! outcome of what it knows then. Questions and answers are those of [`forces`](super::forces).
 
-use super::forces::{ForceOptions, ForceOutcome, Forces, precision};
+use super::super::wrench_set::{Contribution, Norm, WrenchSet};
 use super::program::Program;
-use super::wrench_set::{Contribution, Norm, WrenchSet};
+use super::{ForceOptions, ForceOutcome, Forces, precision};
 use crate::scalar::{Real, Vector, finite, norm, unit};
 use crate::simplex::Vertex;
 use crate::support::{Failure, Support};
