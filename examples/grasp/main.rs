@@ -118,8 +118,11 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
             writeln!(out).map_err(written)?;
         }
     }
-    if !request.csv && known > 0 {
-        writeln!(out, "{inside} of {known} references are in their brackets").map_err(written)?;
+    if !request.csv {
+        writeln!(out, "{}", table::LEGEND).map_err(written)?;
+        if known > 0 {
+            writeln!(out, "{inside} of {known} references are in their brackets").map_err(written)?;
+        }
     }
     Ok(())
 }
@@ -134,7 +137,7 @@ fn written(error: io::Error) -> Trouble {
 fn run(request: &Request) -> Result<(), Trouble> {
     let mut out = io::stdout().lock();
     if request.table1 {
-        table1::print(&mut out)?;
+        table1::print(&mut out, request.relative)?;
     }
     if let Some(file) = &request.file {
         let named = |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{file}: {trouble}") };

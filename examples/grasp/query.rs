@@ -13,7 +13,7 @@ use qdist::grasp::{
     ActiveForces, ContactError, GraspError, HandContact, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
     active_wrenches, default_tolerance, wrenches,
 };
-use qdist::{Answer, Options, Solver, Vector, Workspace};
+use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
 use crate::Trouble;
 use crate::gauges::Q;
@@ -122,7 +122,14 @@ pub struct Found {
     pub weakest: Vector<f64, 6>,
 }
 
-/// d_Q of the set; `relative` is the tolerance where Q is smooth.
+/// Is the bracket wider than asked for, and not around 0 either?
+fn is_open(answer: &Answer<f64, 6>, relative: f64) -> bool {
+    matches!(answer.outcome, Outcome::Precision | Outcome::Iterations | Outcome::Capacity)
+        && !(answer.upper - answer.lower <= relative * answer.upper)
+}
+
+/// d_Q of the set. Where a query ends with too wide a bracket, it is asked once more, from the direction it ended with: another start
+/// makes another polytope, and rounding ends that elsewhere. `relative` is the tolerance where Q is smooth.
 pub fn solve(
     solver: &mut Solver<'_, f64, 6>,
     wrenches: &Wrenches,
@@ -133,15 +140,21 @@ pub fn solve(
 ) -> Result<Found, Trouble> {
     let gauge = q.gauge()?;
     let within = wrenches.dimension() < 6 && (set == Set::Active || wrenches.contains(q));
-    let relative = if q.is_polytope() { relative.min(POLYTOPE_RELATIVE) } else { relative };
-    let options = Options { relative, max_iterations: MAX_ITERATIONS, ..Options::default() };
     let a = WrenchSet::new(&wrenches.primitives, norm);
+    let mut ask = |options: &Options<f64, 6>| match within {
+        true => solver.solve_in_span(&a, &*gauge, options),
+        false => solver.solve(&a, &*gauge, options),
+    };
+    let wanted = Options { relative, max_iterations: MAX_ITERATIONS, ..Options::default() };
+    let exact = Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() };
     let mut times = Vec::new();
     let begin = Instant::now();
     let answer = loop {
         let before = Instant::now();
-        let answer =
-            if within { solver.solve_in_span(&a, &*gauge, &options) } else { solver.solve(&a, &*gauge, &options) };
+        let mut answer = ask(if q.is_polytope() { &exact } else { &wanted });
+        if is_open(&answer, relative) {
+            answer = ask(&Options { guess: Some(answer.direction), ..wanted });
+        }
         times.push(before.elapsed());
         if begin.elapsed() > SAMPLE || times.len() == REPETITIONS {
             break answer;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use qdist::Plan;
+use qdist::{Outcome, Plan};
 use qdist::grasp::{Friction, WrenchSet};
 
 use crate::csv::outcome_name;
@@ -55,9 +55,19 @@ fn plan_name(plan: Plan) -> &'static str {
     }
 }
 
+/// What the columns and words mean.
+pub const LEGEND: &str = "\
+d_Q(W) is in [lower, upper]; a negative value is minus the distance of the origin from W. dim: of the space that d is measured in.
+hardest to resist: the external wrench of which the grasp bears the least multiple. limited by: the contacts with the largest share of
+d at the weakest direction, by which d grows with their force caps (Linf: each by itself; L1: all that are named together).";
+
 /// A bound; "unknown" for one that is not known.
 fn bound(x: f64) -> String {
-    if x.abs() == f64::MAX { "unknown".into() } else { format!("{x:.10}") }
+    match x.abs() {
+        f64::MAX => "unknown".into(),
+        size if size > 0.0 && size < 1e-4 => format!("{x:.3e}"),
+        _ => format!("{x:.10}"),
+    }
 }
 
 /// Does the bracket contain the reference, to what that is known to?
@@ -95,12 +105,15 @@ pub fn row(
         plan_name(answer.plan),
         answer.iterations,
         found.time.as_secs_f64() * 1e3,
-        query.d.map_or("-".into(), |d| format!("{d:.10}")),
+        query.d.map_or("-".into(), bound),
         query.q.label(),
     )?;
     let set = WrenchSet::new(&sets.get(query.set).primitives, query.norm);
     let worst = words::worst(&grasp.names, &set, &answer.direction, 1e-3);
     let hardest = words::hardest(&found.weakest);
-    let verb = if answer.lower > 0.0 { "hardest to resist is" } else { "cannot resist" };
-    writeln!(out, "       {verb} {hardest}; {worst}")
+    let least = match answer.outcome {
+        Outcome::Touching | Outcome::Separated | Outcome::Degenerate => "cannot resist",
+        _ => "hardest to resist",
+    };
+    writeln!(out, "       {least}: {hardest}; {worst}")
 }

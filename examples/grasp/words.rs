@@ -4,7 +4,7 @@
 //! -d q is the largest of its kind that the grasp resists: it is hardest to resist.
 
 use qdist::Vector;
-use qdist::grasp::WrenchSet;
+use qdist::grasp::{Norm, WrenchSet};
 use qdist::support::Support;
 
 /// Within 10 degrees of an axis, or of a plane of two.
@@ -24,7 +24,7 @@ fn sign(negative: bool) -> &'static str {
     if negative { "-" } else { "+" }
 }
 
-/// Where a vector points: "+x", "between +x and -y", "(0.58, 0.58, 0.58)".
+/// Where a vector points: "+x", "between +x and -y" in the middle, "(0.27, -0.53, 0.80)".
 fn heading(v: &Vector<f64, 3>) -> String {
     if let Some((name, negative)) = axis(v) {
         return format!("{}{name}", sign(negative));
@@ -33,11 +33,12 @@ fn heading(v: &Vector<f64, 3>) -> String {
     order.sort_by(|&i, &j| v[j].abs().total_cmp(&v[i].abs()));
     let [a, b, _] = order;
     let part = |i: usize| format!("{}{}", sign(v[i] < 0.0), AXES[i]);
-    if v[a].hypot(v[b]) >= ALONG * v.norm() {
-        let nearer = if v[b].abs() < 0.5 * v[a].abs() { format!(", nearer {}", part(a)) } else { String::new() };
-        return format!("between {} and {}{nearer}", part(a), part(b));
+    let even = v[b].abs() >= 0.8 * v[a].abs() && v[a].hypot(v[b]) >= ALONG * v.norm();
+    if even {
+        return format!("between {} and {}", part(a), part(b));
     }
-    let v = v.normalize();
+    // Without the sign of what is rounded to 0.
+    let v = v.normalize().map(|x| (x * 100.0).round() / 100.0 + 0.0);
     format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z)
 }
 
@@ -91,36 +92,41 @@ pub fn hardest(weakest: &Vector<f64, 6>) -> String {
     wrench(&-weakest)
 }
 
-/// The contacts that hold the grasp together at its weakest: which share of d is theirs, h_i(u) / h(u). That is how much d grows, relatively,
-/// with the force cap of contact i, where the weakest direction is unique. Under L1 the strongest contact has it all; contacts that are as strong, to
-/// `tolerance`, are named together, because d grows with all of them only.
+/// The contacts whose force caps limit d, with their share h_i(u) / h(u) of it at the weakest direction u: the relative growth of d per relative
+/// growth of the cap, where u is unique. Under L1 the strongest contact alone has h(u). Contacts as strong as the strongest, to `tolerance`, are
+/// named with it: under L1, d grows only with all of them together.
 pub fn worst(names: &[String], set: &WrenchSet<f64>, u: &Vector<f64, 6>, tolerance: f64) -> String {
     let heights: Vec<f64> = set.contributions().iter().map(|p| p.value(u).max(0.0)).collect();
-    let (most, least) = (heights.iter().copied().fold(0.0, f64::max), set.error() * u.norm());
-    if !(most > 4.0 * least) {
+    let most = heights.iter().copied().fold(0.0, f64::max);
+    if !(most > 4.0 * set.error() * u.norm()) {
         return "no contact resists it".into();
     }
     let as_strong = names.iter().zip(&heights).filter(|(_, h)| **h >= most * (1.0 - tolerance));
     let named: Vec<&str> = as_strong.map(|(name, _)| name.as_str()).collect();
-    let share = match set.norm() {
-        qdist::grasp::Norm::L1 => 1.0,
-        qdist::grasp::Norm::LInf => most / heights.iter().sum::<f64>(),
-    };
-    let each = if named.len() > 1 && share < 1.0 { " each" } else { "" };
-    let contact = if named.len() > 1 { "contacts" } else { "contact" };
-    format!("{contact} {} resist{} {:.0} % of it{each}", named.join(", "), if named.len() > 1 { "" } else { "s" }, 100.0 * share)
+    let contacts = if let [one] = named.as_slice() { format!("contact {one}") } else { format!("contacts {}", named.join(", ")) };
+    match set.norm() {
+        Norm::L1 if named.len() > 1 => format!("limited by {contacts} together"),
+        Norm::L1 => format!("limited by {contacts}"),
+        Norm::LInf => {
+            let each = if named.len() > 1 { " each" } else { "" };
+            format!("limited by {contacts} ({:.0} %{each})", 100.0 * most / heights.iter().sum::<f64>())
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::SMatrix;
+    use qdist::grasp::Primitive;
+
     use super::*;
 
     #[test]
     fn wrenches_in_words() {
         for (w, words) in [
             ([0.0, -3.0, 0.1, 0.0, 0.0, 0.0], "a push along -y"),
-            ([1.0, 0.8, 0.0, 0.0, 0.0, 0.0], "a push between +x and +y"),
-            ([1.0, -0.4, 0.0, 0.0, 0.0, 0.0], "a push between +x and -y, nearer +x"),
+            ([1.0, 0.9, 0.0, 0.0, 0.0, 0.0], "a push between +x and +y"),
+            ([0.6, -0.4, 0.0, 0.0, 0.0, 0.0], "a push along (0.83, -0.55, 0.00)"),
             ([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], "a push along (0.58, 0.58, 0.58)"),
             ([0.0, 0.0, 0.0, 0.0, 0.0, 2.0], "a turn about z, counterclockwise seen from +z"),
             ([0.0, 0.0, 0.0, -2.0, 0.0, 0.0], "a turn about x, clockwise seen from +x"),
@@ -133,6 +139,22 @@ mod tests {
         ] {
             assert_eq!(wrench(&Vector::from(w)), words);
         }
+    }
+
+    /// Of three contacts that push along x, the strongest, and two that are as strong.
+    #[test]
+    fn the_contacts_that_limit() {
+        let x = Vector::<f64, 6>::x();
+        let names = ["a", "b", "c"].map(String::from);
+        let tell = |forces: [f64; 3], norm| {
+            let primitives = forces.map(|f| Primitive::new(x * f, SMatrix::zeros()).unwrap());
+            worst(&names, &WrenchSet::new(&primitives, norm), &x, 1e-3)
+        };
+        assert_eq!(tell([1.0, 2.0, -1.0], Norm::L1), "limited by contact b");
+        assert_eq!(tell([1.0, 3.0, -1.0], Norm::LInf), "limited by contact b (75 %)");
+        assert_eq!(tell([2.0, 2.0, 1.0], Norm::L1), "limited by contacts a, b together");
+        assert_eq!(tell([2.0, 2.0, 1.0], Norm::LInf), "limited by contacts a, b (40 % each)");
+        assert_eq!(tell([-1.0, -1.0, 0.0], Norm::LInf), "no contact resists it");
     }
 
     /// What the contacts exert upwards at most resists what pulls down.
