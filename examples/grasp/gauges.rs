@@ -148,15 +148,17 @@ impl Q {
         }
     }
 
-    /// A wrench of Q that is farthest along `u`; of several the middle, where Q is a box.
+    /// A wrench of Q that is farthest along `u`; of several the middle, where Q is a box. Of a segment its end, wherever `u` points.
     pub fn farthest(&self, u: &Vector<f64, 6>) -> Option<Vector<f64, 6>> {
-        if let Form::Box(_) = self.form {
-            let least = 1e-6 * u.norm();
-            let u = u.map(|x| if x.abs() < least { 0.0 } else { x });
-            let corner = self.gauge().ok()?.mapping(&u)?;
-            return Some(Vector::from_fn(|i, _| if u[i] == 0.0 { 0.0 } else { corner[i] }));
+        match &self.shape {
+            Shape::Segment(end) => Some(combined(end, &self.axes)),
+            Shape::Box(_) if matches!(self.form, Form::Box(_)) => {
+                let level = u.map(|x| x.abs() < 1e-6 * u.norm());
+                let corner = self.gauge().ok()?.mapping(u)?;
+                Some(Vector::from_fn(|i, _| if level[i] { 0.0 } else { corner[i] }))
+            }
+            _ => self.gauge().ok()?.mapping(u),
         }
-        self.gauge().ok()?.mapping(u)
     }
 
     /// The largest t with t v in Q.
@@ -258,7 +260,7 @@ mod tests {
         let sizes = [2.0, 0.5, 1.5];
         let axes = [[1.0, 2.0, 0.0, 0.0, 1.0, 0.0], [0.0, 1.0, -1.0, 0.5, 0.0, 0.0], [0.3, 0.0, 0.0, 0.0, 0.0, 2.0]];
         let axes = axes.map(Vector::<f64, 6>::from).to_vec();
-        let u = Vector::<f64, 6>::from([0.3, -0.2, 0.9, 0.1, -0.5, 0.4]);
+        let u = -Vector::<f64, 6>::from([0.3, -0.2, 0.9, 0.1, -0.5, 0.4]);
         let c: Vec<f64> = axes.iter().zip(sizes).map(|(axis, size)| axis.dot(&u) * size).collect();
         let want = [
             c.iter().map(|x| x * x).sum::<f64>().sqrt(),

@@ -184,8 +184,7 @@ fn hand_contact(field: &Field) -> Result<HandContact<f64>, Trouble> {
         };
         format!("{}, {key}: {error}", field.at)
     };
-    let mut contact =
-        Contact::new(field.get("p").vector()?, field.get("n").vector()?, friction).map_err(words)?;
+    let mut contact = Contact::new(field.get("p").vector()?, field.get("n").vector()?, friction).map_err(words)?;
     let tangent = |key: &str| field.get(key).maybe(Field::vector);
     match (tangent("o")?, tangent("t")?) {
         (Some(o), Some(t)) => contact = contact.with_tangents(o, t).map_err(words)?,

@@ -79,7 +79,9 @@ impl Request {
 /// The queries of a grasp that comes without.
 fn usual_queries() -> Result<Vec<Reference>, Trouble> {
     let kinds = [Set::Passive, Set::Active].into_iter().flat_map(|set| [(set, Norm::L1), (set, Norm::LInf)]);
-    kinds.map(|(set, norm)| Ok(Reference { set, norm, q: Q::new(Shape::Ball(1.0), None)?, d: None, tolerance: 0.0 })).collect()
+    kinds
+        .map(|(set, norm)| Ok(Reference { set, norm, q: Q::new(Shape::Ball(1.0), None)?, d: None, tolerance: 0.0 }))
+        .collect()
 }
 
 /// Answers for all of the grasps.

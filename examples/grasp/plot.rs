@@ -40,7 +40,8 @@ pub fn draw(
     wrenches: &Wrenches,
     found: &Found,
 ) -> Result<(), Trouble> {
-    let name: String = grasp.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    let name: String =
+        grasp.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let file = folder.join(format!("{name}_{index}.svg"));
     let words = |error: Box<dyn Error>| format!("{}: {error}", file.display());
     std::fs::create_dir_all(folder).map_err(|e| words(e.into()))?;

@@ -166,3 +166,116 @@ pub fn solve(
     let dimension = if within { wrenches.dimension() } else { 6 };
     Ok(Found { answer, dimension, time: times[times.len() / 2], weakest })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gauges::Shape;
+    use crate::input::{self, Reference};
+    use crate::{csv, table};
+    use qdist::grasp::{Contact, Friction, Jacobian};
+
+    pub const FIXTURE: &str = include_str!("../../tests/data/grasps.json");
+
+    fn ask(sets: &Sets, set: Set, norm: Norm, q: &Q) -> Found {
+        solve(&mut Box::new(Memory::new()).solver(), sets.get(set), set, norm, q, 1e-4).unwrap()
+    }
+
+    /// Every reference is in a bracket as narrow as promised, and a row of numbers that mean the same.
+    #[test]
+    fn the_fixtures_references() {
+        let mut rows = Vec::new();
+        for grasp in input::read(FIXTURE).unwrap() {
+            let sets = Sets::of_grasp(&grasp).unwrap();
+            for (i, query) in grasp.queries.iter().enumerate() {
+                let Reference { set, norm, q, d, .. } = query;
+                let found = ask(&sets, *set, *norm, q);
+                let (lower, upper, d) = (found.answer.lower, found.answer.upper, d.unwrap());
+                let what = format!("{} {i}: {d} in {lower} {upper}", grasp.id);
+                assert_eq!(table::contains(&found, query), Some(true), "{what}");
+                assert_eq!(found.answer.outcome, Outcome::Converged, "{what}");
+                assert!(upper - lower <= if q.is_polytope() { 1e-9 } else { 1e-4 * upper }, "{what}");
+                assert_eq!(found.answer.dimension, found.dimension, "{what}");
+                let start = rows.len();
+                csv::row(&mut rows, &grasp, i, &found).unwrap();
+                let line = std::str::from_utf8(&rows[start..]).unwrap().trim_end();
+                let fields: Vec<&str> = line.split(',').collect();
+                assert_eq!(fields.len(), csv::HEADER.split(',').count(), "{line}");
+                assert_eq!(fields[..3], [grasp.id.as_str(), &i.to_string(), set.name()], "{line}");
+                assert_eq!((fields[5].parse(), fields[6].parse()), (Ok(lower), Ok(upper)), "{line}");
+                assert_eq!(
+                    (fields[7], fields[8]),
+                    ("converged", if *set == Set::Active { "3" } else { "6" }),
+                    "{line}"
+                );
+            }
+        }
+        assert_eq!(rows.iter().filter(|&&c| c == b'\n').count(), 24);
+    }
+
+    /// Planar fingers in a plane that is no coordinate plane, with Jacobians known to 1e-11: W^a has three dimensions, and the value of
+    /// the plane.
+    #[test]
+    fn a_plane_known_to_rounding() {
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
+        let finger = |x: f64| {
+            let (n, o) = (turn * Vector::from([-x.signum(), 0.0, 0.0]), turn * Vector::from([0.0, 1.0, 0.0]));
+            let contact =
+                Contact::new(turn * Vector::from([x, 0.0, 0.0]), n, Friction::Soft { mu: 0.2, mus: 0.2 }).unwrap();
+            let noise = [3e-12, -1e-11, 7e-12];
+            let jacobian =
+                Jacobian::new([&[1.0, 0.4, 0.2], &[0.3, 0.9, 0.5], &noise, &noise.map(|x| -2.0 * x)]).unwrap();
+            HandContact { contact: contact.with_tangents(o, n.cross(&o)).unwrap(), jacobian: Some(jacobian) }
+        };
+        let sets = Sets::new(&[finger(-0.75), finger(1.3)]).unwrap();
+        assert_eq!(sets.get(Set::Active).dimension(), 3);
+        let ball = ask(&sets, Set::Active, Norm::LInf, &Q::new(Shape::Ball(1.0), None).unwrap());
+        let d = 0.41 / (0.1681f64 + 1.69 + 1.0).sqrt();
+        assert!(
+            (ball.answer.lower - d).abs() < 1e-4 * d && (ball.answer.upper - d).abs() < 1e-4 * d,
+            "{:?}",
+            ball.answer.upper
+        );
+        assert_eq!((ball.answer.outcome, ball.answer.dimension), (Outcome::Converged, 3));
+        // A box along the plane's own axes.
+        let axis = |v: Vector<f64, 3>, moment: bool| {
+            let v = turn * v;
+            Vector::<f64, 6>::from_fn(|i, _| if (i >= 3) == moment { v[i % 3] } else { 0.0 })
+        };
+        let axes = vec![axis(Vector::x(), false), axis(Vector::y(), false), axis(Vector::z(), true)];
+        let q = Q::new(Shape::Box(vec![1.0; 3]), Some(axes)).unwrap();
+        let found = ask(&sets, Set::Active, Norm::LInf, &q).answer;
+        let d = 0.41 / (0.41 + 2.3);
+        assert!((found.lower - d).abs() < 1e-9 && (found.upper - d).abs() < 1e-9, "{} {}", found.lower, found.upper);
+    }
+
+    /// Two frictionless contacts: W is a line. Along it d is 1; a ball is not in it at all.
+    #[test]
+    fn a_flat_passive_set() {
+        let contact = |x: f64| {
+            let n = Vector::from([-x.signum(), 0.0, 0.0]);
+            HandContact {
+                contact: Contact::new(Vector::from([x, 0.0, 0.0]), n, Friction::Frictionless).unwrap(),
+                jacobian: None,
+            }
+        };
+        let sets = Sets::new(&[contact(-1.0), contact(1.0)]).unwrap();
+        let x = Q::new(Shape::Segment(vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), None).unwrap();
+        let found = ask(&sets, Set::Passive, Norm::LInf, &x);
+        assert!((found.answer.lower - 1.0).abs() < 1e-9 && (found.answer.upper - 1.0).abs() < 1e-9);
+        assert_eq!(found.dimension, 1);
+        let found = ask(&sets, Set::Passive, Norm::LInf, &Q::new(Shape::Ball(1.0), None).unwrap());
+        assert_eq!((found.answer.outcome, found.dimension), (Outcome::Degenerate, 6));
+        assert!(found.answer.lower <= 0.0 && 0.0 <= found.answer.upper && found.answer.upper < 1e-12);
+    }
+
+    /// No contact, or none that can do anything, is an answer.
+    #[test]
+    fn nothing_holds_nothing() {
+        let sets = Sets::new(&[]).unwrap();
+        for set in [Set::Passive, Set::Active] {
+            let found = ask(&sets, set, Norm::L1, &Q::new(Shape::Ball(1.0), None).unwrap()).answer;
+            assert!(found.lower <= 0.0 && found.upper >= 0.0 && found.upper < 1e-12, "{:?}", found.outcome);
+        }
+    }
+}

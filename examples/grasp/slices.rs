@@ -25,11 +25,16 @@ struct Plane {
 
 fn planes(weakest: &Vector<f64, 6>) -> Vec<Plane> {
     let axis = |i: usize| Vector::<f64, 6>::from_fn(|j, _| f64::from(i == j));
-    let plane = |i: usize, j: usize| Plane { axes: [axis(i), axis(j)], names: [i, j].map(|i| COORDINATES[i].to_string()) };
+    let plane =
+        |i: usize, j: usize| Plane { axes: [axis(i), axis(j)], names: [i, j].map(|i| COORDINATES[i].to_string()) };
     let part = |first: usize, name: &str| {
         let part = Vector::<f64, 6>::from_fn(|i, _| if i / 3 == first { weakest[i] } else { 0.0 });
         let used = part.norm() > 1e-9 * weakest.norm() && weakest.norm() > 0.0;
-        if used { (part.normalize(), format!("{name} of the weakest wrench")) } else { (axis(3 * first), COORDINATES[3 * first].to_string()) }
+        if used {
+            (part.normalize(), format!("{name} of the weakest wrench"))
+        } else {
+            (axis(3 * first), COORDINATES[3 * first].to_string())
+        }
     };
     let ((force, force_name), (moment, moment_name)) = (part(0, "force"), part(1, "moment"));
     let mut planes: Vec<Plane> = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3)].map(|(i, j)| plane(i, j)).into();
@@ -44,7 +49,8 @@ fn reach(solver: &mut Solver<'_, f64, 6>, scene: &Scene, v: &Vector<f64, 6>) -> 
         return Some(0.0);
     }
     let set = WrenchSet::new(&scene.wrenches.primitives, scene.reference.norm);
-    let options = Options { relative: 1e-4, absolute: 1e-9, ..Options::default() };
+    // A picture shows no more. Where the origin is on the surface, a ray may not know its end for long.
+    let options = Options { relative: 1e-4, absolute: 1e-9, max_iterations: 1000, ..Options::default() };
     let answer = solver.solve_in_span(&set, &Segment::new(*v).ok()?, &options);
     let upper = answer.upper.max(0.0);
     (upper < f64::MAX).then_some(upper)
@@ -104,6 +110,9 @@ pub fn draw(file: &Path, title: &str, scene: &Scene, solver: &mut Solver<'_, f64
             .light_line_style(WHITE)
             .bold_line_style(BLACK.mix(0.08))
             .label_style(font(16))
+            // Without the sign of what is rounded to 0.
+            .x_label_formatter(&|x| ((x * 100.0).round() / 100.0 + 0.0).to_string())
+            .y_label_formatter(&|y| ((y * 100.0).round() / 100.0 + 0.0).to_string())
             .x_labels(5)
             .y_labels(5)
             .x_desc(plane.names[0].as_str())

@@ -19,7 +19,7 @@ type Point = Vector<f64, 3>;
 const SIZE: (i32, i32) = (1200, 1000);
 /// Directions that are asked; and of a smooth set, whose every point is another one.
 const DIRECTIONS: usize = 2000;
-const SMOOTH: usize = 400;
+const SMOOTH: usize = 300;
 
 /// `count` unit vectors, evenly spread: a spiral from pole to pole.
 fn directions(count: usize) -> impl Iterator<Item = Point> {
@@ -119,7 +119,8 @@ impl View {
         let (x, y) = (range(&right), range(&up));
         let room = (f64::from(SIZE.0) - 200.0, f64::from(SIZE.1) - 240.0);
         let scale = (room.0 / (x.1 - x.0)).min(room.1 / (y.1 - y.0));
-        let center = (f64::from(SIZE.0) / 2.0 - scale * (x.0 + x.1) / 2.0, f64::from(SIZE.1) / 2.0 + scale * (y.0 + y.1) / 2.0);
+        let center =
+            (f64::from(SIZE.0) / 2.0 - scale * (x.0 + x.1) / 2.0, f64::from(SIZE.1) / 2.0 + scale * (y.0 + y.1) / 2.0);
         Self { right, up, near, scale, center }
     }
 
@@ -163,7 +164,8 @@ pub fn draw(file: &Path, title: &str, scene: &Scene, basis: &SMatrix<f64, 6, 3>)
     let root = SVGBackend::new(file, (SIZE.0 as u32, SIZE.1 as u32)).into_drawing_area();
     root.fill(&WHITE)?;
     root.draw(&Text::new(title.to_string(), (40, 24), font(30)))?;
-    let polygon = |face: &[Point], style: ShapeStyle| Polygon::new(face.iter().map(|p| view.see(p)).collect::<Vec<_>>(), style);
+    let polygon =
+        |face: &[Point], style: ShapeStyle| Polygon::new(face.iter().map(|p| view.see(p)).collect::<Vec<_>>(), style);
     let outline = |face: &[Point], style: ShapeStyle| {
         let closed = face.iter().chain(face.first()).map(|p| view.see(p));
         PathElement::new(closed.collect::<Vec<_>>(), style)

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use qdist::{Outcome, Plan};
 use qdist::grasp::{Friction, WrenchSet};
+use qdist::{Outcome, Plan};
 
 use crate::csv::outcome_name;
 use crate::input::{Grasp, Reference, Set, norm_name};

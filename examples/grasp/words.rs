@@ -56,7 +56,11 @@ fn turn(moment: &Vector<f64, 3>) -> String {
         }
         None => {
             let way = heading(moment);
-            let about = if way.starts_with("between") { "a right-handed turn about a line" } else { "a right-handed turn about" };
+            let about = if way.starts_with("between") {
+                "a right-handed turn about a line"
+            } else {
+                "a right-handed turn about"
+            };
             format!("{about} {way}")
         }
     }
@@ -103,7 +107,8 @@ pub fn worst(names: &[String], set: &WrenchSet<f64>, u: &Vector<f64, 6>, toleran
     }
     let as_strong = names.iter().zip(&heights).filter(|(_, h)| **h >= most * (1.0 - tolerance));
     let named: Vec<&str> = as_strong.map(|(name, _)| name.as_str()).collect();
-    let contacts = if let [one] = named.as_slice() { format!("contact {one}") } else { format!("contacts {}", named.join(", ")) };
+    let contacts =
+        if let [one] = named.as_slice() { format!("contact {one}") } else { format!("contacts {}", named.join(", ")) };
     match set.norm() {
         Norm::L1 if named.len() > 1 => format!("limited by {contacts} together"),
         Norm::L1 => format!("limited by {contacts}"),
@@ -132,9 +137,15 @@ mod tests {
             ([0.0, 0.0, 0.0, -2.0, 0.0, 0.0], "a turn about x, clockwise seen from +x"),
             ([0.0, 0.0, 0.0, 1.0, 0.0, 1.0], "a right-handed turn about a line between +x and +z"),
             ([0.0, 0.0, 0.0, -1.0, 1.0, 1.0], "a right-handed turn about (-0.58, 0.58, 0.58)"),
-            ([2.0, 0.0, 0.0, 0.0, 0.5, 0.0], "mostly a push along +x, with a turn about y, counterclockwise seen from +y"),
+            (
+                [2.0, 0.0, 0.0, 0.0, 0.5, 0.0],
+                "mostly a push along +x, with a turn about y, counterclockwise seen from +y",
+            ),
             ([0.5, 0.0, 0.0, 0.0, -2.0, 0.0], "mostly a turn about y, clockwise seen from +y, with a push along +x"),
-            ([1.0, 0.0, 0.0, 0.0, 0.0, 1.0], "a push along +x together with a turn about z, counterclockwise seen from +z"),
+            (
+                [1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+                "a push along +x together with a turn about z, counterclockwise seen from +z",
+            ),
             ([0.0; 6], "nothing"),
         ] {
             assert_eq!(wrench(&Vector::from(w)), words);
