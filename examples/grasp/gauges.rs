@@ -136,11 +136,16 @@ impl Q {
         !matches!(self.shape, Shape::Ball(_) | Shape::Ellipsoid(_))
     }
 
+    /// The end of a segment.
+    pub fn segment(&self) -> Option<Vector<f64, 6>> {
+        if let Shape::Segment(end) = &self.shape { Some(combined(end, &self.axes)) } else { None }
+    }
+
     /// Vectors that span it.
     pub fn span(&self) -> Vec<Vector<f64, 6>> {
         match &self.shape {
             Shape::Ball(_) => self.axes.clone(),
-            Shape::Segment(end) => vec![combined(end, &self.axes)],
+            Shape::Segment(_) => self.segment().into_iter().collect(),
             shape => {
                 let sizes = shape.numbers().unwrap_or(&[]);
                 self.axes.iter().zip(sizes).filter(|(_, size)| **size > 0.0).map(|(axis, _)| *axis).collect()
@@ -151,7 +156,7 @@ impl Q {
     /// A wrench of Q that is farthest along `u`; of several the middle, where Q is a box. Of a segment its end, wherever `u` points.
     pub fn farthest(&self, u: &Vector<f64, 6>) -> Option<Vector<f64, 6>> {
         match &self.shape {
-            Shape::Segment(end) => Some(combined(end, &self.axes)),
+            Shape::Segment(_) => self.segment(),
             Shape::Box(_) if matches!(self.form, Form::Box(_)) => {
                 let level = u.map(|x| x.abs() < 1e-6 * u.norm());
                 let corner = self.gauge().ok()?.mapping(u)?;

@@ -13,6 +13,8 @@ use qdist::grasp::{
     ActiveForces, ContactError, GraspError, HandContact, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
     active_wrenches, default_tolerance, wrenches,
 };
+use qdist::qset::Gauge;
+use qdist::support::{Rigid, Support};
 use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
 use crate::Trouble;
@@ -128,8 +130,84 @@ fn is_open(answer: &Answer<f64, 6>, relative: f64) -> bool {
         && !(answer.upper - answer.lower <= relative * answer.upper)
 }
 
-/// d_Q of the set. Where a query ends with too wide a bracket, it is asked once more, from the direction it ended with: another start
-/// makes another polytope, and rounding ends that elsewhere. `relative` is the tolerance where Q is smooth.
+/// A set, where it is measured, and by what.
+struct Query<'a> {
+    set: WrenchSet<'a, f64>,
+    gauge: Box<dyn Gauge<f64, 6> + 'a>,
+    /// The end of the segment, if Q is one.
+    end: Option<Vector<f64, 6>>,
+    /// In the span of the set, or in all of R^6.
+    within: bool,
+    polytope: bool,
+    relative: f64,
+}
+
+impl Query<'_> {
+    fn once(
+        &self,
+        solver: &mut Solver<'_, f64, 6>,
+        a: &dyn Support<f64, 6>,
+        options: &Options<f64, 6>,
+    ) -> Answer<f64, 6> {
+        match self.within {
+            true => solver.solve_in_span(a, &*self.gauge, options),
+            false => solver.solve(a, &*self.gauge, options),
+        }
+    }
+
+    /// What is left open by one start is asked again from another: that of a ray further on; else from the direction where the first
+    /// ended, which makes another polytope, and rounding ends that elsewhere.
+    fn answer(&self, solver: &mut Solver<'_, f64, 6>) -> Answer<f64, 6> {
+        let wanted = Options { relative: self.relative, max_iterations: MAX_ITERATIONS, ..Options::default() };
+        let exact = Options { relative: self.relative.min(POLYTOPE_RELATIVE), ..Options::default() };
+        let mut answer = self.once(solver, &self.set, if self.polytope { &exact } else { &wanted });
+        if let Some(end) = self.end {
+            let open = is_open(&answer, exact.relative) && answer.lower <= 0.0;
+            return if open { self.further_on(solver, answer, &end, &exact) } else { answer };
+        }
+        if is_open(&answer, self.relative) {
+            let found = self.once(solver, &self.set, &Options { guess: Some(answer.direction), ..wanted });
+            if !(found.upper - found.lower > answer.upper - answer.lower) {
+                answer = found;
+            }
+        }
+        answer
+    }
+
+    /// The ray from a point s q further on, where the origin is too near to the surface for rounding. If s q is inside of W, so is the way to it, since W
+    /// contains the origin: the rest of the ray is all that is asked for. If it is outside, the direction that shows it bounds d by less than s.
+    fn further_on(
+        &self,
+        solver: &mut Solver<'_, f64, 6>,
+        mut best: Answer<f64, 6>,
+        end: &Vector<f64, 6>,
+        options: &Options<f64, 6>,
+    ) -> Answer<f64, 6> {
+        let least = POLYTOPE_RELATIVE * self.set.extent() / end.norm();
+        for s in [best.upper / 2.0, best.upper / 16.0, least] {
+            // A power of two: its products are exact.
+            let s = 2f64.powi(s.max(least).log2().floor() as i32);
+            let Ok(moved) = Rigid::new(&self.set, SMatrix::identity(), -end * s) else { break };
+            let rest = self.once(solver, &moved, options);
+            let along = rest.direction.dot(end);
+            if rest.lower > 0.0 {
+                let (lower, upper) = ((s + rest.lower).next_down(), (s + rest.upper).next_up().min(best.upper));
+                return Answer { lower, upper, support: rest.support + end * s, ..rest };
+            }
+            let upper = (self.set.value(&rest.direction) + self.set.error()) / along;
+            if rest.upper < 0.0 && along > 0.0 && upper < best.upper {
+                best =
+                    Answer { upper, direction: rest.direction, support: rest.support + end * s, gauge: along, ..best };
+            }
+            if best.upper <= 2.0 * least {
+                return Answer { outcome: Outcome::Touching, ..best };
+            }
+        }
+        best
+    }
+}
+
+/// d_Q of the set; `relative` is the tolerance where Q is smooth.
 pub fn solve(
     solver: &mut Solver<'_, f64, 6>,
     wrenches: &Wrenches,
@@ -138,23 +216,15 @@ pub fn solve(
     q: &Q,
     relative: f64,
 ) -> Result<Found, Trouble> {
-    let gauge = q.gauge()?;
     let within = wrenches.dimension() < 6 && (set == Set::Active || wrenches.contains(q));
-    let a = WrenchSet::new(&wrenches.primitives, norm);
-    let mut ask = |options: &Options<f64, 6>| match within {
-        true => solver.solve_in_span(&a, &*gauge, options),
-        false => solver.solve(&a, &*gauge, options),
-    };
-    let wanted = Options { relative, max_iterations: MAX_ITERATIONS, ..Options::default() };
-    let exact = Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() };
+    let end = q.segment().map(|end| if within { projected(&end, &wrenches.span) } else { end });
+    let set = WrenchSet::new(&wrenches.primitives, norm);
+    let query = Query { set, gauge: q.gauge()?, end, within, polytope: q.is_polytope(), relative };
     let mut times = Vec::new();
     let begin = Instant::now();
     let answer = loop {
         let before = Instant::now();
-        let mut answer = ask(if q.is_polytope() { &exact } else { &wanted });
-        if is_open(&answer, relative) {
-            answer = ask(&Options { guess: Some(answer.direction), ..wanted });
-        }
+        let answer = query.answer(solver);
         times.push(before.elapsed());
         if begin.elapsed() > SAMPLE || times.len() == REPETITIONS {
             break answer;
@@ -267,6 +337,30 @@ mod tests {
         let found = ask(&sets, Set::Passive, Norm::LInf, &Q::new(Shape::Ball(1.0), None).unwrap());
         assert_eq!((found.answer.outcome, found.dimension), (Outcome::Degenerate, 6));
         assert!(found.answer.lower <= 0.0 && 0.0 <= found.answer.upper && found.answer.upper < 1e-12);
+    }
+
+    /// One contact is no force closure: the origin is on the surface of W. The ray along its normal ends where the contact's force does, one
+    /// out of the cone at once.
+    #[test]
+    fn a_ray_from_the_surface() {
+        let n = Vector::from([0.6, 0.0, 0.8]);
+        let contact = Contact::new(Vector::zeros(), n, Friction::Hard { mu: 0.5 }).unwrap();
+        let across = Contact::new(Vector::from([0.0, 1.0, 0.0]), n, Friction::Soft { mu: 0.5, mus: 0.1 }).unwrap();
+        let hand = [contact, across].map(|contact| HandContact { contact, jacobian: None });
+        let sets = Sets::new(&hand).unwrap();
+        let segment = |end: [f64; 6]| Q::new(Shape::Segment(end.to_vec()), None).unwrap();
+        for (norm, d) in [(Norm::L1, 2.0), (Norm::LInf, 4.0)] {
+            // Half the force from each contact.
+            let found = ask(&sets, Set::Passive, norm, &segment([0.3, 0.0, 0.4, 0.2, 0.0, -0.15])).answer;
+            assert!(
+                (found.lower - d).abs() < 1e-9 && (found.upper - d).abs() < 1e-9,
+                "{} {}",
+                found.lower,
+                found.upper
+            );
+            let found = ask(&sets, Set::Passive, norm, &segment([-0.6, 0.0, -0.8, 0.0, 0.0, 0.0])).answer;
+            assert!(found.lower <= 0.0 && 0.0 <= found.upper && found.upper < 1e-9, "{} {}", found.lower, found.upper);
+        }
     }
 
     /// No contact, or none that can do anything, is an answer.
