@@ -55,7 +55,7 @@ impl Shape {
 #[derive(Clone, Debug)]
 enum Form {
     Ball(Ball<f64>),
-    Ellipsoid(EllipsoidGauge<f64, 6>),
+    Ellipsoid(Box<EllipsoidGauge<f64, 6>>),
     Box(BoxGauge<f64, 6>),
     CrossPolytope(CrossPolytope<f64, 6>),
     Segment(Segment<f64, 6>),
@@ -101,7 +101,7 @@ impl Q {
     pub fn gauge(&self) -> Result<Box<dyn Gauge<f64, 6> + '_>, Trouble> {
         Ok(match &self.form {
             Form::Ball(q) => Box::new(*q),
-            Form::Ellipsoid(q) => Box::new(*q),
+            Form::Ellipsoid(q) => Box::new(**q),
             Form::Box(q) => Box::new(*q),
             Form::CrossPolytope(q) => Box::new(*q),
             Form::Segment(q) => Box::new(*q),
@@ -220,7 +220,7 @@ fn ellipsoid(sizes: &[f64], axes: &[Vector<f64, 6>]) -> Result<Form, Trouble> {
             rotation.set_column(k, &axis.normalize());
         }),
     }
-    EllipsoidGauge::new(semi, rotation).map(Form::Ellipsoid).map_err(words)
+    EllipsoidGauge::new(semi, rotation).map(|q| Form::Ellipsoid(Box::new(q))).map_err(words)
 }
 
 fn vertices(points: &[Vec<f64>], axes: &[Vector<f64, 6>]) -> Result<Form, Trouble> {

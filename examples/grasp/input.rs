@@ -132,7 +132,7 @@ pub fn read(text: &str) -> Result<Vec<Grasp>, Trouble> {
     let name = |i: usize, v: &Value| match &v["id"] {
         Value::String(id) => id.clone(),
         Value::Number(id) => id.to_string(),
-        _ => format!("number {i}"),
+        _ => i.to_string(),
     };
     list.iter().enumerate().map(|(i, v)| grasp(name(i, v), v)).collect()
 }
@@ -263,7 +263,7 @@ mod tests {
     fn little_is_enough() {
         let grasps = read(BARE).unwrap();
         let [grasp] = grasps.as_slice() else { panic!("{}", grasps.len()) };
-        assert_eq!((grasp.id.as_str(), grasp.names[0].as_str(), grasp.queries.len()), ("number 0", "0", 0));
+        assert_eq!((grasp.id.as_str(), grasp.names[0].as_str(), grasp.queries.len()), ("0", "0", 0));
         assert_eq!(grasp.hand[0].contact.friction(), Friction::Hard { mu: 0.5 });
         assert!(grasp.hand[0].jacobian.is_none());
         assert_eq!(read(&format!("[{BARE}, {BARE}]")).unwrap().len(), 2);
@@ -288,20 +288,20 @@ mod tests {
     #[test]
     fn errors_say_where() {
         for (from, to, says) in [
-            (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp number 0, contact 0, p: has not 3 numbers"),
-            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp number 0, contact 0, p, entry 1 (missing): is not a number"),
-            (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp number 0, contact 0, n: the normal is not a unit vector"),
-            (r#""p""#, r#""q""#, "grasp number 0, contact 0, p (missing): is not a list"),
-            ("0.5", "-0.5, \"type\": \"hard\"", "grasp number 0, contact 0, mu, mus: a friction"),
-            ("0.5", "0.5, \"J\": [[1], [1], [1]]", "grasp number 0, contact 0, J: has not 4 rows"),
-            ("0.5", "0.5, \"J\": [[1], [1, 2], [1], [0]]", "grasp number 0, contact 0, J: the Jacobian"),
-            ("0.5", "0.5, \"type\": \"wet\"", "grasp number 0, contact 0, type: is not soft"),
+            (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp 0, contact 0, p: has not 3 numbers"),
+            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0, p, entry 1 (missing): is not a number"),
+            (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp 0, contact 0, n: the normal is not a unit vector"),
+            (r#""p""#, r#""q""#, "grasp 0, contact 0, p (missing): is not a list"),
+            ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0, mu, mus: a friction"),
+            ("0.5", "0.5, \"J\": [[1], [1], [1]]", "grasp 0, contact 0, J: has not 4 rows"),
+            ("0.5", "0.5, \"J\": [[1], [1, 2], [1], [0]]", "grasp 0, contact 0, J: the Jacobian"),
+            ("0.5", "0.5, \"type\": \"wet\"", "grasp 0, contact 0, type: is not soft"),
             ("\"contacts\"", "\"id\": \"x\", \"contact\"", "instances (missing)"),
-            ("}]}", "}], \"refs\": [{\"set\": \"V\"}]}", "grasp number 0, ref 0, set: is not W or Wa"),
+            ("}]}", "}], \"refs\": [{\"set\": \"V\"}]}", "grasp 0, ref 0, set: is not W or Wa"),
             (
                 "}]}",
                 "}], \"refs\": [{\"set\": \"W\", \"norm\": \"L1\", \"Q\": {\"type\": \"box\", \"half_widths\": [1]}}]}",
-                "grasp number 0, ref 0, R (missing): is not a list",
+                "grasp 0, ref 0, R (missing): is not a list",
             ),
         ] {
             let text = BARE.replacen(from, to, 1);

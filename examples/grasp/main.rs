@@ -36,7 +36,7 @@ use query::{Memory, Sets};
 /// What is wrong, in words.
 type Trouble = String;
 
-const USAGE: &str = "usage: grasp FILE.json [--csv] [--plot DIR] [--relative R]\n       grasp --table1 [FILE.json ...]";
+const USAGE: &str = "usage: grasp FILE.json [--csv] [--plot DIR] [--relative R]\n       grasp --table1";
 
 /// What the command line asks for.
 #[derive(Debug, PartialEq)]

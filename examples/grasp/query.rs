@@ -248,7 +248,8 @@ mod tests {
     pub const FIXTURE: &str = include_str!("../../tests/data/grasps.json");
 
     fn ask(sets: &Sets, set: Set, norm: Norm, q: &Q) -> Found {
-        solve(&mut Box::new(Memory::new()).solver(), sets.get(set), set, norm, q, 1e-4).unwrap()
+        let mut memory = Box::new(Memory::new());
+        solve(&mut memory.solver(), sets.get(set), set, norm, q, 1e-4).unwrap()
     }
 
     /// Every reference is in a bracket as narrow as promised, and a row of numbers that mean the same.

@@ -13,7 +13,8 @@ use crate::words;
 /// Contacts, fingers and dimensions.
 pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> {
     let unit = grasp.length_unit.map_or(String::new(), |unit| format!("; lengths in units of {unit:.4} m"));
-    writeln!(out, "{}: {} contacts{unit}", grasp.id, grasp.hand.len())?;
+    let contacts = if let [_] = grasp.hand.as_slice() { "contact" } else { "contacts" };
+    writeln!(out, "{}: {} {contacts}{unit}", grasp.id, grasp.hand.len())?;
     let width = grasp.names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
     writeln!(out, "  {:<width$}  {:<24}  {:>6}  {:>4}  active forces", "contact", "friction", "joints", "rank")?;
     for ((name, c), forces) in grasp.names.iter().zip(&grasp.hand).zip(&sets.fingers) {
