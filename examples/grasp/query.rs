@@ -13,7 +13,7 @@ use qdist::grasp::{
     ActiveForces, ContactError, GraspError, HandContact, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
     active_wrenches, default_tolerance, wrenches,
 };
-use qdist::qset::Gauge;
+use qdist::qset::{Gauge, Segment};
 use qdist::support::{Rigid, Support};
 use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
@@ -130,6 +130,10 @@ fn is_open(answer: &Answer<f64, 6>, relative: f64) -> bool {
         && !(answer.upper - answer.lower <= relative * answer.upper)
 }
 
+fn smooth(relative: f64) -> Options<f64, 6> {
+    Options { relative, max_iterations: MAX_ITERATIONS, ..Options::default() }
+}
+
 /// A set, where it is measured, and by what.
 struct Query<'a> {
     set: WrenchSet<'a, f64>,
@@ -138,7 +142,8 @@ struct Query<'a> {
     end: Option<Vector<f64, 6>>,
     /// In the span of the set, or in all of R^6.
     within: bool,
-    polytope: bool,
+    /// What is asked first, and the tolerance that will do.
+    options: Options<f64, 6>,
     relative: f64,
 }
 
@@ -158,15 +163,14 @@ impl Query<'_> {
     /// What is left open by one start is asked again from another: that of a ray further on; else from the direction where the first
     /// ended, which makes another polytope, and rounding ends that elsewhere.
     fn answer(&self, solver: &mut Solver<'_, f64, 6>) -> Answer<f64, 6> {
-        let wanted = Options { relative: self.relative, max_iterations: MAX_ITERATIONS, ..Options::default() };
-        let exact = Options { relative: self.relative.min(POLYTOPE_RELATIVE), ..Options::default() };
-        let mut answer = self.once(solver, &self.set, if self.polytope { &exact } else { &wanted });
+        let mut answer = self.once(solver, &self.set, &self.options);
         if let Some(end) = self.end {
-            let open = is_open(&answer, exact.relative) && answer.lower <= 0.0;
-            return if open { self.further_on(solver, answer, &end, &exact) } else { answer };
+            let open = is_open(&answer, self.options.relative) && answer.lower <= 0.0;
+            return if open { self.further_on(solver, answer, &end) } else { answer };
         }
         if is_open(&answer, self.relative) {
-            let found = self.once(solver, &self.set, &Options { guess: Some(answer.direction), ..wanted });
+            let options = Options { guess: Some(answer.direction), ..smooth(self.relative) };
+            let found = self.once(solver, &self.set, &options);
             if !(found.upper - found.lower > answer.upper - answer.lower) {
                 answer = found;
             }
@@ -181,14 +185,13 @@ impl Query<'_> {
         solver: &mut Solver<'_, f64, 6>,
         mut best: Answer<f64, 6>,
         end: &Vector<f64, 6>,
-        options: &Options<f64, 6>,
     ) -> Answer<f64, 6> {
         let least = POLYTOPE_RELATIVE * self.set.extent() / end.norm();
         for s in [best.upper / 2.0, best.upper / 16.0, least] {
             // A power of two: its products are exact.
             let s = 2f64.powi(s.max(least).log2().floor() as i32);
             let Ok(moved) = Rigid::new(&self.set, SMatrix::identity(), -end * s) else { break };
-            let rest = self.once(solver, &moved, options);
+            let rest = self.once(solver, &moved, &self.options);
             let along = rest.direction.dot(end);
             if rest.lower > 0.0 {
                 let (lower, upper) = ((s + rest.lower).next_down(), (s + rest.upper).next_up().min(best.upper));
@@ -219,7 +222,11 @@ pub fn solve(
     let within = wrenches.dimension() < 6 && (set == Set::Active || wrenches.contains(q));
     let end = q.segment().map(|end| if within { projected(&end, &wrenches.span) } else { end });
     let set = WrenchSet::new(&wrenches.primitives, norm);
-    let query = Query { set, gauge: q.gauge()?, end, within, polytope: q.is_polytope(), relative };
+    let options = match q.is_polytope() {
+        true => Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() },
+        false => smooth(relative),
+    };
+    let query = Query { set, gauge: q.gauge()?, end, within, options, relative };
     let mut times = Vec::new();
     let begin = Instant::now();
     let answer = loop {
@@ -235,6 +242,18 @@ pub fn solve(
     let weakest = if within { projected(&weakest, &wrenches.span) } else { weakest };
     let dimension = if within { wrenches.dimension() } else { 6 };
     Ok(Found { answer, dimension, time: times[times.len() / 2], weakest })
+}
+
+/// The largest t with t v in the set, for pictures: to 1e-4, and with no more than some hundred points.
+pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v: &Vector<f64, 6>) -> Option<f64> {
+    if wrenches.span.distance(v) > default_tolerance::<f64>() * v.norm() {
+        return Some(0.0);
+    }
+    let (set, gauge) = (WrenchSet::new(&wrenches.primitives, norm), Box::new(Segment::new(*v).ok()?));
+    let options = Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: 200, ..Options::default() };
+    let query = Query { set, gauge, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
+    let upper = query.answer(solver).upper.max(0.0);
+    (upper < f64::MAX).then_some(upper)
 }
 
 #[cfg(test)]

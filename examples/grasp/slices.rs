@@ -8,11 +8,12 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use plotters::prelude::*;
-use qdist::grasp::{WrenchSet, default_tolerance};
-use qdist::qset::Segment;
-use qdist::{Options, Solver, Vector};
+use qdist::grasp::WrenchSet;
+use qdist::support::Support;
+use qdist::{Solver, Vector};
 
 use crate::plot::{COORDINATES, INSIDE, SET, Scene, font};
+use crate::query::reach;
 
 const SIZE: (u32, u32) = (1760, 940);
 const RAYS: usize = 360;
@@ -42,20 +43,6 @@ fn planes(weakest: &Vector<f64, 6>) -> Vec<Plane> {
     planes
 }
 
-/// The largest t with t v in the set; `None` when it is not known.
-fn reach(solver: &mut Solver<'_, f64, 6>, scene: &Scene, v: &Vector<f64, 6>) -> Option<f64> {
-    let span = &scene.wrenches.span;
-    if span.distance(v) > default_tolerance::<f64>() {
-        return Some(0.0);
-    }
-    let set = WrenchSet::new(&scene.wrenches.primitives, scene.reference.norm);
-    // A picture shows no more. Where the origin is on the surface, a ray may not know its end for long.
-    let options = Options { relative: 1e-4, absolute: 1e-9, max_iterations: 1000, ..Options::default() };
-    let answer = solver.solve_in_span(&set, &Segment::new(*v).ok()?, &options);
-    let upper = answer.upper.max(0.0);
-    (upper < f64::MAX).then_some(upper)
-}
-
 type Outline = Vec<(f64, f64)>;
 
 /// The outlines of the set and of d Q.
@@ -66,7 +53,7 @@ fn sections(solver: &mut Solver<'_, f64, 6>, scene: &Scene, plane: &Plane) -> [O
         // Exactly along the axes, where sets are often flat.
         let [x, y] = [x, y].map(|c| if c.abs() < 1e-15 { 0.0 } else { c });
         let v = plane.axes[0] * x + plane.axes[1] * y;
-        if let Some(t) = reach(solver, scene, &v) {
+        if let Some(t) = reach(solver, scene.wrenches, scene.reference.norm, &v) {
             outer.push((t * x, t * y));
         }
         let t = scene.d() * scene.reference.q.reach(&v);
@@ -75,16 +62,24 @@ fn sections(solver: &mut Solver<'_, f64, 6>, scene: &Scene, plane: &Plane) -> [O
     [outer, inner]
 }
 
-fn extent(outlines: &[[Outline; 2]]) -> f64 {
+/// Half the width of a picture: that of the outlines, unless they are no more than points.
+fn extent(outlines: &[[Outline; 2]], whole: f64) -> f64 {
     let largest = outlines.iter().flatten().flatten().fold(0.0, |m: f64, (x, y)| m.max(x.abs()).max(y.abs()));
-    if largest > 0.0 { 1.1 * largest } else { 1.0 }
+    1.1 * if largest > 1e-3 * whole { largest } else { whole.max(f64::MIN_POSITIVE) }
+}
+
+/// A number of an axis that goes up to `size`, without the sign of what is rounded to 0.
+fn label(x: f64, size: f64) -> String {
+    let x = if x.abs() < 1e-9 * size { 0.0 } else { x };
+    if (0.05..1e4).contains(&size) { ((x * 1e3).round() / 1e3).to_string() } else { format!("{x:.1e}") }
 }
 
 pub fn draw(file: &Path, title: &str, scene: &Scene, solver: &mut Solver<'_, f64, 6>) -> Result<(), Box<dyn Error>> {
     let planes = planes(&scene.found.weakest);
     let outlines: Vec<[Outline; 2]> = planes.iter().map(|plane| sections(solver, scene, plane)).collect();
     // Forces have one scale, moments another.
-    let scales = [extent(&outlines[..3]), extent(&outlines[3..6]), extent(&outlines[6..])];
+    let whole = WrenchSet::new(&scene.wrenches.primitives, scene.reference.norm).extent();
+    let scales = [extent(&outlines[..3], whole), extent(&outlines[3..6], whole), extent(&outlines[6..], whole)];
     let root = SVGBackend::new(file, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let (head, body) = root.split_vertically(60);
@@ -110,9 +105,8 @@ pub fn draw(file: &Path, title: &str, scene: &Scene, solver: &mut Solver<'_, f64
             .light_line_style(WHITE)
             .bold_line_style(BLACK.mix(0.08))
             .label_style(font(16))
-            // Without the sign of what is rounded to 0.
-            .x_label_formatter(&|x| ((x * 100.0).round() / 100.0 + 0.0).to_string())
-            .y_label_formatter(&|y| ((y * 100.0).round() / 100.0 + 0.0).to_string())
+            .x_label_formatter(&|x| label(*x, size))
+            .y_label_formatter(&|y| label(*y, size))
             .x_labels(5)
             .y_labels(5)
             .x_desc(plane.names[0].as_str())
