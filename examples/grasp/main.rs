@@ -23,6 +23,7 @@ mod gauges;
 mod input;
 mod plot;
 mod query;
+mod sets;
 mod slices;
 mod surface;
 mod table;
@@ -31,7 +32,8 @@ mod words;
 
 use gauges::{Q, Shape};
 use input::{Grasp, Reference, Set};
-use query::{Memory, Sets};
+use query::Memory;
+use sets::Sets;
 
 /// What is wrong, in words.
 type Trouble = String;

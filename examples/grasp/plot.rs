@@ -11,7 +11,8 @@ use qdist::Solver;
 
 use crate::Trouble;
 use crate::input::{Grasp, norm_name};
-use crate::query::{Found, Wrenches};
+use crate::query::Found;
+use crate::sets::Wrenches;
 use crate::{slices, surface};
 
 pub const SET: RGBColor = RGBColor(31, 89, 158);

@@ -1,25 +1,17 @@
-//! A grasp's wrench sets, and d_Q of them.
-//!
-//! W is measured in all of R^6. A flat Q is a set there like any other; where W itself is flat and Q lies in its span, all of eq. 16
-//! takes place in that span. W^a is measured in the subspace R that it spans (the paper, end of Section III), by the projection of Q on R.
-//!
-//! R is found with the rank tolerance of the active forces, since a Jacobian is no better known than that. What sticks out of R by less is rounding, and
-//! is taken off.
+//! d_Q of a wrench set: what is asked of the library, and what is asked again.
 
 use std::time::{Duration, Instant};
 
 use nalgebra::SMatrix;
-use qdist::grasp::{
-    ActiveForces, ContactError, GraspError, HandContact, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
-    active_wrenches, default_tolerance, wrenches,
-};
+use qdist::grasp::{Norm, WrenchSet};
 use qdist::qset::{Gauge, Segment};
 use qdist::support::{Rigid, Support};
 use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
 use crate::Trouble;
 use crate::gauges::Q;
-use crate::input::{Grasp, Set};
+use crate::input::Set;
+use crate::sets::Wrenches;
 
 /// Facets and vertices of the workspace.
 pub type Memory = Workspace<f64, 6, 1024, 4096>;
@@ -33,86 +25,6 @@ const MAX_ITERATIONS: u32 = 5_000_000;
 /// A query that takes less is repeated for its time.
 const SAMPLE: Duration = Duration::from_millis(20);
 const REPETITIONS: usize = 9;
-
-/// The wrenches of each contact, and the subspace that all of them span.
-pub struct Wrenches {
-    pub primitives: Vec<Primitive<f64>>,
-    pub span: Subspace<f64>,
-}
-
-impl Wrenches {
-    fn new(primitives: Vec<Primitive<f64>>) -> Result<Self, ContactError> {
-        let span = Subspace::new(&primitives, default_tolerance())?;
-        let full = span.dimension() == 6;
-        let primitives = match full {
-            true => primitives,
-            false => primitives.iter().map(|p| flat(p, &span)).collect::<Result<_, _>>()?,
-        };
-        Ok(Self { primitives, span })
-    }
-
-    pub fn dimension(&self) -> usize {
-        self.span.dimension()
-    }
-
-    /// Does the span contain Q?
-    fn contains(&self, q: &Q) -> bool {
-        q.span().iter().all(|axis| self.span.distance(axis) <= default_tolerance::<f64>() * axis.norm())
-    }
-}
-
-/// The projection on a subspace.
-fn projected(wrench: &Vector<f64, 6>, span: &Subspace<f64>) -> Vector<f64, 6> {
-    let axes = span.basis().iter().map(|axis| Vector::from(*axis));
-    axes.fold(Vector::zeros(), |sum, axis| sum + axis * axis.dot(wrench))
-}
-
-fn flat(primitive: &Primitive<f64>, span: &Subspace<f64>) -> Result<Primitive<f64>, ContactError> {
-    if primitive.is_empty() {
-        return Ok(*primitive);
-    }
-    let [a, b, c] = primitive.disc().data.0.map(|column| projected(&Vector::from(column), span));
-    Primitive::new(projected(primitive.center(), span), SMatrix::from_columns(&[a, b, c]))
-}
-
-/// W and W^a of a grasp.
-pub struct Sets {
-    passive: Wrenches,
-    active: Wrenches,
-    /// What each contact's joints can do; `None` for the palm.
-    pub fingers: Vec<Option<ActiveForces<f64>>>,
-}
-
-impl Sets {
-    pub fn new(hand: &[HandContact<f64>]) -> Result<Self, Trouble> {
-        let frame = WrenchFrame::new(Vector::zeros(), 1.0).map_err(|e| e.to_string())?;
-        let words = |error: GraspError| error.to_string();
-        let contacts: Vec<_> = hand.iter().map(|c| c.contact).collect();
-        let (mut passive, mut active) = (vec![Primitive::empty(); hand.len()], vec![Primitive::empty(); hand.len()]);
-        wrenches(&contacts, &frame, &mut passive).map_err(words)?;
-        active_wrenches(hand, &frame, default_tolerance(), &mut active).map_err(words)?;
-        let forces = |c: &HandContact<f64>| {
-            c.jacobian.as_ref().map(|j| ActiveForces::new(&c.contact, j, &frame, default_tolerance())).transpose()
-        };
-        let words = |error: ContactError| error.to_string();
-        Ok(Self {
-            passive: Wrenches::new(passive).map_err(words)?,
-            active: Wrenches::new(active).map_err(words)?,
-            fingers: hand.iter().map(forces).collect::<Result<_, _>>().map_err(words)?,
-        })
-    }
-
-    pub fn of_grasp(grasp: &Grasp) -> Result<Self, Trouble> {
-        Self::new(&grasp.hand).map_err(|trouble| format!("grasp {}, {trouble}", grasp.id))
-    }
-
-    pub fn get(&self, set: Set) -> &Wrenches {
-        match set {
-            Set::Passive => &self.passive,
-            Set::Active => &self.active,
-        }
-    }
-}
 
 /// An answer, and what it took.
 pub struct Found {
@@ -219,8 +131,8 @@ pub fn solve(
     q: &Q,
     relative: f64,
 ) -> Result<Found, Trouble> {
-    let within = wrenches.dimension() < 6 && (set == Set::Active || wrenches.contains(q));
-    let end = q.segment().map(|end| if within { projected(&end, &wrenches.span) } else { end });
+    let within = wrenches.holds(set, q);
+    let end = q.segment().map(|end| if within { wrenches.projected(&end) } else { end });
     let set = WrenchSet::new(&wrenches.primitives, norm);
     let options = match q.is_polytope() {
         true => Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() },
@@ -239,14 +151,14 @@ pub fn solve(
     };
     times.sort();
     let weakest = q.farthest(&answer.direction).unwrap_or(answer.direction);
-    let weakest = if within { projected(&weakest, &wrenches.span) } else { weakest };
+    let weakest = if within { wrenches.projected(&weakest) } else { weakest };
     let dimension = if within { wrenches.dimension() } else { 6 };
     Ok(Found { answer, dimension, time: times[times.len() / 2], weakest })
 }
 
 /// The largest t with t v in the set, for pictures: to 1e-4, and with no more than some hundred points.
 pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v: &Vector<f64, 6>) -> Option<f64> {
-    if wrenches.span.distance(v) > default_tolerance::<f64>() * v.norm() {
+    if !wrenches.contains(v) {
         return Some(0.0);
     }
     let (set, gauge) = (WrenchSet::new(&wrenches.primitives, norm), Box::new(Segment::new(*v).ok()?));
@@ -261,8 +173,9 @@ mod tests {
     use super::*;
     use crate::gauges::Shape;
     use crate::input::{self, Reference};
+    use crate::sets::Sets;
     use crate::{csv, table};
-    use qdist::grasp::{Contact, Friction, Jacobian};
+    use qdist::grasp::{Contact, Friction, HandContact, Jacobian};
 
     pub const FIXTURE: &str = include_str!("../../tests/data/grasps.json");
 
@@ -327,6 +240,16 @@ mod tests {
             ball.answer.upper
         );
         assert_eq!((ball.answer.outcome, ball.answer.dimension), (Outcome::Converged, 3));
+        // A weight out of the plane is not held at all.
+        let out = turn * Vector::<f64, 3>::z();
+        let weight = Q::new(Shape::Segment(vec![out.x, out.y, out.z, 0.0, 0.0, 0.0]), None).unwrap();
+        let found = ask(&sets, Set::Active, Norm::LInf, &weight);
+        assert!(
+            found.answer.lower <= 0.0 && 0.0 <= found.answer.upper && found.answer.upper < 1e-9,
+            "{:?}",
+            found.answer.upper
+        );
+        assert!(ask(&sets, Set::Passive, Norm::LInf, &weight).answer.lower > 0.3);
         // A box along the plane's own axes.
         let axis = |v: Vector<f64, 3>, moment: bool| {
             let v = turn * v;

@@ -7,7 +7,8 @@ use qdist::{Outcome, Plan};
 
 use crate::csv::outcome_name;
 use crate::input::{Grasp, Reference, Set, norm_name};
-use crate::query::{Found, Sets};
+use crate::query::Found;
+use crate::sets::Sets;
 use crate::words;
 
 /// Contacts, fingers and dimensions.

@@ -10,7 +10,8 @@ use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm}
 
 use crate::gauges::{Q, Shape};
 use crate::input::Set;
-use crate::query::{self, Memory, Sets};
+use crate::query::{self, Memory};
+use crate::sets::Sets;
 use crate::{Trouble, written};
 
 /// What the paper prints for one set: d, iterations, seconds.
