@@ -206,7 +206,7 @@ fn main() -> std::process::ExitCode {
             let seconds = times(&hands, |fingers| {
                 memory.solver().solve(&WrenchSet::new(fingers, Norm::LInf), &Ball::unit(), &options);
             });
-            report.row(&format!("limits, k = {contacts}"), 3 * contacts, Norm::LInf, relative, &seconds);
+            report.row(&format!("limits k={contacts}"), 3 * contacts, Norm::LInf, relative, &seconds);
         }
     }
     println!("\nd with linearised cones over the exact d: median (least) of 20 grasps; soft contacts, L1 and Linf");
