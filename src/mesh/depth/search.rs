@@ -75,7 +75,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         for pose in self.options.poses {
             self.offer_slid(pose);
         }
-        rays::escape(&mut self);
+        let escape = rays::escape(&mut self);
         let from = self.start;
         if self.options.push_out
             && let Some(seed) = pushout::push_out(&mut self, &from)
@@ -83,7 +83,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             walk(&mut self, &seed, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
         }
         if self.options.rays {
-            let seeds = rays::cast(&mut self);
+            let seeds = rays::cast(&mut self, escape);
             for seed in seeds {
                 walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
             }

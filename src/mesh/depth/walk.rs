@@ -15,10 +15,10 @@ use nalgebra::Isometry3;
 
 /// The first trust region, in diagonals of A.
 const TRUST: f64 = 0.05;
-/// The margin within which contacts are seen, in trust regions.
-const MARGIN: f64 = 0.1;
-/// The gap that remains, in margins.
-const CLEARANCE: f64 = 0.01;
+/// The margin within which contacts are seen, in diagonals of A.
+const MARGIN: f64 = 0.005;
+/// The gap that remains, in trust regions.
+const CLEARANCE: f64 = 3e-3;
 /// A walk has converged when its trust region is this small, in diagonals of A.
 const LEAST: f64 = 2e-5;
 /// Iterations at most.
@@ -38,17 +38,19 @@ pub struct Bounds {
 /// Walks from a free pose; offers every improvement of the best. Returns where it ends, a free pose.
 pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
     search.walks += 1;
-    let mut pose = *from;
+    let margin = MARGIN * search.size;
+    let mut pose = search.slide(from, 0.2 * margin);
     let mut value = search.distance(&pose);
-    let mut trust = TRUST * search.size;
+    let most = TRUST * search.size;
+    let mut trust = most;
     let mut poor = 0;
     for iteration in 0..ITERATIONS {
         if !search.goes_on() {
             break;
         }
-        let margin = MARGIN * trust;
-        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin) else {
-            trust *= 0.25;
+        let clearance = (CLEARANCE * trust).min(0.1 * margin);
+        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin, clearance) else {
+            trust *= 0.1;
             if trust < LEAST * search.size {
                 break;
             }
@@ -58,7 +60,7 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
         let gain = 1.0 - next_value / value;
         pose = next;
         value = next_value;
-        trust = if fraction < 1.0 { (2.0 * fraction * trust).min(0.5 * trust) } else { trust.min(4.0 * length) };
+        trust = if fraction < 1.0 { fraction * length } else { (2.0 * trust).min(4.0 * length).min(most) };
         if trust < LEAST * search.size {
             break;
         }
@@ -83,6 +85,7 @@ fn step(
     value: f64,
     trust: f64,
     margin: f64,
+    clearance: f64,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
     search.pair.contacts(pose, margin, &mut search.scratch.contacts);
     search.limit_contacts();
@@ -91,7 +94,7 @@ fn step(
     scratch.constraints.extend(scratch.contacts.iter().map(|c| Constraint {
         point: c.on_a,
         normal: c.normal,
-        gap: c.gap - CLEARANCE * margin,
+        gap: c.gap - clearance,
     }));
     let options = StepOptions { trust, tolerance: 1e-3 };
     let found =

@@ -42,23 +42,25 @@ impl Pair<'_> {
     ///
     /// Parallel faces and edges touch along an area; its corners are the contacts.
     pub fn contacts(&mut self, pose: &Isometry3<f64>, margin: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, margin, false, out);
+        self.collect(pose, margin, false, usize::MAX, out);
     }
 
     /// The same of two solids that overlap: contacts with a negative gap are features that have passed through each other by at most
     /// `reach`, vertex-face, face-vertex and edge-edge. Their normals are those of the contacts that they were, so that to move
     /// by minus the gap along the normal undoes them.
     ///
+    /// Gives up after `work` pairs of triangles, and returns whether it did not.
+    ///
     /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
-    pub fn overlaps(&mut self, pose: &Isometry3<f64>, reach: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, reach, self.a.is_solid() && self.b.is_solid(), out);
+    pub fn overlaps(&mut self, pose: &Isometry3<f64>, reach: f64, work: usize, out: &mut Vec<Contact>) -> bool {
+        self.collect(pose, reach, self.a.is_solid() && self.b.is_solid(), work, out)
     }
 
-    fn collect(&mut self, pose: &Isometry3<f64>, margin: f64, through: bool, out: &mut Vec<Contact>) {
+    fn collect(&mut self, pose: &Isometry3<f64>, margin: f64, through: bool, work: usize, out: &mut Vec<Contact>) -> bool {
         self.counters.contact += 1;
         out.clear();
         if !is_usable(pose) || !(margin >= 0.0) {
-            return;
+            return true;
         }
         let (a, b) = (self.a, self.b);
         let relative = Relative::new(pose, a, b);
@@ -67,7 +69,12 @@ impl Pair<'_> {
             (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y),
             _ => false,
         };
-        let _ = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
+        let mut work = work;
+        let walked = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
+            work -= 1;
+            if work == 0 {
+                return ControlFlow::Break(());
+            }
             let on_s = relative.place_all(a.corners(s));
             if plane_gap_squared(&on_s, b.corners(t)) <= enough {
                 candidates((a, s, &on_s), (b, t, b.corners(t)), |x| {
@@ -82,6 +89,7 @@ impl Pair<'_> {
         });
         out.sort_unstable_by_key(|c| (c.feature_a, c.feature_b));
         out.dedup_by_key(|c| (c.feature_a, c.feature_b));
+        walked.is_continue()
     }
 }
 

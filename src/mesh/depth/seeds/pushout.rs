@@ -14,6 +14,10 @@ const STEPS: usize = 12;
 const REACH: f64 = 0.05;
 /// The gap that is aimed at, in diagonals of A.
 const CLEARANCE: f64 = 1e-3;
+/// And at least, where there is so much to see that less must do.
+const LEAST_REACH: f64 = 2e-3;
+/// Pairs of triangles at most in a query.
+const WORK: usize = 4000;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
@@ -21,15 +25,22 @@ const TRUST: f64 = 0.2;
 pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     let mut pose = *from;
     let mut reach = REACH * search.size;
+    let mut most = 0.5 * search.size;
     for _ in 0..STEPS {
         if !search.goes_on() {
             return None;
         }
-        search.pair.overlaps(&pose, reach, &mut search.scratch.contacts);
+        while !search.pair.overlaps(&pose, reach, WORK, &mut search.scratch.contacts) {
+            reach *= 0.5;
+            most = reach;
+            if reach < LEAST_REACH * search.size {
+                return None;
+            }
+        }
         search.limit_contacts();
         let scratch = &mut *search.scratch;
         if !scratch.contacts.iter().any(|c| c.gap < 0.0) {
-            reach *= 2.0;
+            reach = (2.0 * reach).min(most);
         }
         scratch.constraints.clear();
         scratch.constraints.extend(scratch.contacts.iter().map(|c| Constraint {

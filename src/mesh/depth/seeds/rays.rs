@@ -13,7 +13,7 @@ const SCREWS: usize = 64;
 
 /// Moves A out of B's box, along the axis that is nearest. There is always such a pose, so there always is an upper bound, but for
 /// coordinates at the end of what numbers can do.
-pub fn escape(search: &mut Search) {
+pub fn escape(search: &mut Search) -> f64 {
     let (low_b, high_b) = search.pair.b().bounds();
     let (low, high) = search.pair.a().bounds();
     let turn = search.start.rotation.to_rotation_matrix();
@@ -30,9 +30,10 @@ pub fn escape(search: &mut Search) {
         let pose = moved(&search.start, &shift);
         if !search.pair.collides(&pose) {
             search.take(&pose);
-            return;
+            return search.distance(&pose);
         }
     }
+    f64::INFINITY
 }
 
 /// A free pose and its value.
@@ -43,22 +44,22 @@ pub struct Seed {
 }
 
 /// Translations into all directions, then random screws. Returns the best and diverse.
-pub fn cast(search: &mut Search) -> Vec<Seed> {
+pub fn cast(search: &mut Search, escape: f64) -> Vec<Seed> {
     let turn = search.random.rotation();
     let mut found: Vec<Seed> = Vec::new();
     for k in 0..TRANSLATIONS {
         let direction = turn * on_sphere(k, TRANSLATIONS);
-        ray(search, &Motion { linear: direction, angular: Vector3::zeros() }, &mut found);
+        ray(search, &Motion { linear: direction, angular: Vector3::zeros() }, &mut found, escape);
     }
     for _ in 0..SCREWS {
         let (linear, angular) = (search.random.direction(), search.random.direction());
         let share = search.random.signed().abs();
-        ray(search, &Motion { linear: linear * share, angular: angular * (1.0 - share) }, &mut found);
+        ray(search, &Motion { linear: linear * share, angular: angular * (1.0 - share) }, &mut found, escape);
     }
     found.sort_by(|x, y| x.value.total_cmp(&y.value));
     let mut chosen: Vec<Seed> = Vec::new();
     for seed in found {
-        if chosen.len() < 4 && chosen.iter().all(|c| search.metric.distance(&c.pose, &seed.pose) > 0.3 * seed.value) {
+        if chosen.len() < envf("K", 4.0) as usize && chosen.iter().all(|c| search.metric.distance(&c.pose, &seed.pose) > envf("DIV", 0.3) * seed.value) {
             chosen.push(seed);
         }
     }
@@ -71,9 +72,9 @@ struct Motion {
     angular: Vector3<f64>,
 }
 
-const KEEP: f64 = 1.2;
+fn envf(k: &str, d: f64) -> f64 { std::env::var(k).ok().and_then(|x| x.parse().ok()).unwrap_or(d) }
 
-fn ray(search: &mut Search, motion: &Motion, found: &mut Vec<Seed>) {
+fn ray(search: &mut Search, motion: &Motion, found: &mut Vec<Seed>, escape: f64) {
     if !search.goes_on() {
         return;
     }
@@ -83,7 +84,7 @@ fn ray(search: &mut Search, motion: &Motion, found: &mut Vec<Seed>) {
     let at = |s: f64| {
         Twist { linear: motion.linear * s, angular: motion.angular * (s / radius), about }.applied(&search.start)
     };
-    let most = KEEP * search.upper;
+    let most = envf("KEEP", 1.2) * found.iter().fold(escape, |m, x| m.min(x.value));
     // The parameter where the metric is at its most.
     let mut far = most;
     for _ in 0..6 {
