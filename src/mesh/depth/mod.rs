@@ -31,6 +31,7 @@
 //! # Ok::<(), qdist::mesh::ModelError>(())
 //! ```
 
+mod contact_space;
 mod random;
 mod search;
 mod seeds;
@@ -40,6 +41,7 @@ use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};
 use nalgebra::Isometry3;
+use contact_space::Primitive;
 use search::Search;
 
 /// How much is done for a depth.
@@ -172,6 +174,7 @@ pub struct DepthSolver<'m> {
 #[derive(Clone, Debug)]
 struct Scratch {
     contacts: Vec<Contact>,
+    primitives: Vec<Primitive>,
     constraints: Vec<Constraint>,
     memory: StepMemory,
 }
@@ -179,7 +182,7 @@ struct Scratch {
 impl<'m> DepthSolver<'m> {
     /// A moves, B rests.
     pub fn new(a: &'m Model, b: &'m Model) -> DepthSolver<'m> {
-        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()), scratch: Scratch { contacts: Vec::new(), constraints: Vec::new(), memory: StepMemory::new(walk::CONTACTS) } }
+        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()), scratch: Scratch { contacts: Vec::new(), primitives: Vec::new(), constraints: Vec::new(), memory: StepMemory::new(walk::CONTACTS) } }
     }
 
     /// The body that moves.

@@ -4,7 +4,7 @@ use super::random::Random;
 use super::seeds::{pushout, rays};
 use super::walk::{Bounds, CONTACTS, walk};
 use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Watch};
-use crate::mesh::metric::Metric;
+use crate::mesh::metric::{Metric, Sigma};
 use crate::mesh::{Counters, Pair, Screw};
 use nalgebra::Isometry3;
 
@@ -12,6 +12,8 @@ pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
     pub scratch: &'s mut Scratch,
     pub metric: &'s dyn Metric,
+    /// A's object norm, if it has one.
+    pub sigma: Option<&'m Sigma>,
     pub options: &'s DepthOptions<'s>,
     watch: Option<Watch<'w>>,
     /// The query's pose.
@@ -48,6 +50,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             pair: &mut solver.pair,
             scratch: &mut solver.scratch,
             metric,
+            sigma: solver.a.sigma(),
             options,
             watch,
             start: *pose,
@@ -85,9 +88,11 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         if self.options.rays {
             let seeds = rays::cast(&mut self, escape);
             for seed in seeds {
-                walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+                let hopeless = self.upper;
+                walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless });
             }
         }
+        self.polish();
         let outcome = match self.stop {
             Some(outcome) => outcome,
             None if self.upper == f64::INFINITY => Outcome::Stuck,
@@ -163,6 +168,15 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     fn offer_slid(&mut self, pose: &Isometry3<f64>) {
         if usable(pose) && self.goes_on() && !self.pair.collides(pose) {
             let slid = self.slide(pose, 1e-6 * self.size);
+            self.take(&slid);
+        }
+    }
+
+    /// Brings the best pose to where it touches.
+    fn polish(&mut self) {
+        if self.upper.is_finite() {
+            let pose = self.pose;
+            let slid = self.slide(&pose, 1e-6 * self.size);
             self.take(&slid);
         }
     }

@@ -5,6 +5,7 @@
 //! to a value that says that this is no way out.
 
 use super::super::search::Search;
+use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{Constraint, StepOptions};
 use nalgebra::Isometry3;
 
@@ -16,13 +17,17 @@ const REACH: f64 = 0.05;
 const CLEARANCE: f64 = 1e-3;
 /// And at least, where there is so much to see that less must do.
 const LEAST_REACH: f64 = 2e-3;
+/// What counts as a local minimum, as a sine.
+const TILT: f64 = 0.1;
 /// Pairs of triangles at most in a query.
-const WORK: usize = 4000;
+const WORK: usize = 20000;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
 /// A free pose from one that overlaps.
 pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+    // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
+    let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
     let mut pose = *from;
     let mut reach = REACH * search.size;
     let mut most = 0.5 * search.size;
@@ -30,7 +35,7 @@ pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<
         if !search.goes_on() {
             return None;
         }
-        while !search.pair.overlaps(&pose, reach, WORK, &mut search.scratch.contacts) {
+        while !search.pair.overlaps(&pose, reach, TILT, WORK, &mut search.scratch.contacts) {
             reach *= 0.5;
             most = reach;
             if reach < LEAST_REACH * search.size {
@@ -49,7 +54,7 @@ pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<
             gap: c.gap - CLEARANCE * search.size,
         }));
         let options = StepOptions { trust: TRUST * search.size, tolerance: 1e-2 };
-        let step = search.metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
+        let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
         pose = step.twist.applied(&pose);
         if std::env::var("DBG").is_ok() { eprintln!("  push reach {:.3} n {} neg {} end {:?} value {:.4} viol {:.2e}", reach, scratch.contacts.len(), scratch.contacts.iter().filter(|c| c.gap<0.0).count(), step.end, search.metric.distance(&search.start, &pose), step.violation); }
         if search.distance(&pose) > 1.2 * search.upper {
