@@ -13,14 +13,14 @@ use nalgebra::Isometry3;
 const STEPS: usize = 12;
 /// How deep features are looked for, in diagonals of A.
 const REACH: f64 = 0.05;
-/// The gap that is aimed at, in diagonals of A.
+/// The gap that is aimed at first, in diagonals of A.
 const CLEARANCE: f64 = 1e-3;
 /// And at least, where there is so much to see that less must do.
 const LEAST_REACH: f64 = 2e-3;
 /// What counts as a local minimum, as a sine.
 const TILT: f64 = 0.1;
 /// Pairs of triangles at most in a query.
-const WORK: usize = 20000;
+const WORK: usize = 12000;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
@@ -28,6 +28,7 @@ const TRUST: f64 = 0.2;
 pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
     let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
+    let mut clearance = CLEARANCE * search.size;
     let mut pose = *from;
     let mut reach = REACH * search.size;
     let mut most = 0.5 * search.size;
@@ -45,13 +46,18 @@ pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<
         search.limit_contacts();
         let scratch = &mut *search.scratch;
         if !scratch.contacts.iter().any(|c| c.gap < 0.0) {
+            if scratch.contacts.is_empty() && reach >= most {
+                return None;
+            }
+            // What still overlaps is deeper than the reach, or touches in a way that is no minimum: more of both.
             reach = (2.0 * reach).min(most);
+            clearance *= 2.0;
         }
         scratch.constraints.clear();
         scratch.constraints.extend(scratch.contacts.iter().map(|c| Constraint {
             point: c.on_a,
             normal: c.normal,
-            gap: c.gap - CLEARANCE * search.size,
+            gap: c.gap - clearance,
         }));
         let options = StepOptions { trust: TRUST * search.size, tolerance: 1e-2 };
         let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
