@@ -71,7 +71,13 @@ impl Cap {
 }
 
 /// The cap of every node, in the order of the tree.
-pub(super) fn caps(bvh: &Bvh, vertices: usize, triangles: &[[u32; 3]], topology: &Topology, normals: &[Vector3<f64>]) -> Vec<Cap> {
+pub(super) fn caps(
+    bvh: &Bvh,
+    vertices: usize,
+    triangles: &[[u32; 3]],
+    topology: &Topology,
+    normals: &[Vector3<f64>],
+) -> Vec<Cap> {
     let mut irregular = vec![false; vertices];
     for edge in topology.edges().iter().filter(|e| matches!(e.kind, EdgeKind::Irregular | EdgeKind::Open)) {
         edge.vertices.iter().for_each(|&v| irregular[v as usize] = true);

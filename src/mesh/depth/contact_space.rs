@@ -46,10 +46,9 @@ impl Primitive {
         Primitive { on_a: contact.on_a, on_b: contact.on_b, normal: contact.normal, kind }
     }
 
-    /// The signed gap after a motion of A in the frame of B.
-    pub fn gap(&self, motion: &Isometry3<f64>) -> f64 {
-        let apart = motion * self.on_a - self.on_b;
-        let normal = match self.kind {
+    /// The normal after a motion of A in the frame of B.
+    pub fn normal_after(&self, motion: &Isometry3<f64>) -> Vector3<f64> {
+        match self.kind {
             Kind::VertexFace => self.normal,
             Kind::FaceVertex => motion.rotation * self.normal,
             Kind::Edges(u, v) => {
@@ -57,7 +56,11 @@ impl Primitive {
                 let sign = if across.dot(&self.normal) < 0.0 { -1.0 } else { 1.0 };
                 across.try_normalize(0.0).map_or(self.normal, |n| n * sign)
             }
-        };
-        normal.dot(&apart)
+        }
+    }
+
+    /// The signed gap after a motion.
+    pub fn gap(&self, motion: &Isometry3<f64>) -> f64 {
+        self.normal_after(motion).dot(&(motion * self.on_a - self.on_b))
     }
 }

@@ -3,7 +3,7 @@
 use super::random::Random;
 use super::seeds::{pushout, rays};
 use super::walk::{Bounds, CONTACTS, walk};
-use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Watch};
+use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
 use crate::mesh::metric::{Metric, Sigma};
 use crate::mesh::{Counters, Pair, Screw};
 use nalgebra::Isometry3;
@@ -30,6 +30,24 @@ pub(super) struct Search<'s, 'm, 'w> {
     fraction: f64,
     stop: Option<Outcome>,
     before: Counters,
+}
+
+/// What an effort means.
+struct Plan {
+    rays: rays::Plan,
+    /// A walk's least gain.
+    gain: f64,
+    /// A walk is given up when it will not come below this multiple of the best.
+    hope: f64,
+}
+
+fn plan(effort: Effort) -> Plan {
+    let rays = |translations, screws, worse, seeds| rays::Plan { translations, screws, worse, seeds };
+    match effort {
+        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), gain: 1e-3, hope: 1.0 },
+        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), gain: 1e-4, hope: 1.0 },
+        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), gain: 1e-5, hope: 1.2 },
+    }
 }
 
 fn total(c: &Counters) -> u64 {
@@ -75,21 +93,24 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let distance = self.pair.distance(&self.start);
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
-        for pose in self.options.poses {
-            self.offer_slid(pose);
-        }
+        let plan = plan(self.options.effort);
         let escape = rays::escape(&mut self);
-        let from = self.start;
-        if self.options.push_out
-            && let Some(seed) = pushout::push_out(&mut self, &from)
-        {
-            walk(&mut self, &seed, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+        for pose in self.options.poses {
+            self.walk_from(pose, &plan);
         }
-        if self.options.rays {
-            let seeds = rays::cast(&mut self, escape);
-            for seed in seeds {
-                let hopeless = self.upper;
-                walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless });
+        if self.options.push_out
+            && let Some(seed) = pushout::push_out(&mut self)
+        {
+            walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+        }
+        if self.options.rays
+            && let Some(escape) = escape
+        {
+            let seeds = rays::cast(&mut self, &plan.rays, &escape);
+            for (k, seed) in seeds.iter().enumerate() {
+                self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
+                let hopeless = self.upper * plan.hope;
+                walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
             }
         }
         self.polish();
@@ -164,11 +185,14 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Takes a pose if it is free, after it has slid towards the start.
-    fn offer_slid(&mut self, pose: &Isometry3<f64>) {
-        if usable(pose) && self.goes_on() && !self.pair.collides(pose) {
-            let slid = self.slide(pose, 1e-6 * self.size);
-            self.take(&slid);
+    /// Walks from the caller's pose, or from where pushing out from there leads.
+    fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
+        if !usable(pose) || !self.goes_on() {
+            return;
+        }
+        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose) } else { Some(*pose) };
+        if let Some(seed) = seed {
+            walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
     }
 

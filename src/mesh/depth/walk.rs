@@ -9,9 +9,10 @@
 //! leaves out, so it shrinks with the trust region too: both vanish as the walk converges. In the end A slides along the screw
 //! to the start until it touches.
 
-use super::Scratch;
 use super::contact_space::Primitive;
+use super::sampling::sampled_step;
 use super::search::Search;
+use super::{Scratch, Walk};
 use crate::mesh::optimize::{Constraint, StepOptions, Twist};
 use nalgebra::Isometry3;
 
@@ -56,7 +57,6 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
         }
         let clearance = (CLEARANCE * trust).min(0.1 * margin);
         let Some((next, length, fraction)) = step(search, &pose, value, trust, margin, clearance) else {
-            if std::env::var("DBG").is_ok() { eprintln!("  walk {iteration} fail trust {trust:.2e} contacts {} value {value:.5}", search.scratch.contacts.len()); }
             trust *= 0.1;
             if trust < LEAST * search.size {
                 break;
@@ -64,7 +64,6 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
             continue;
         };
         let next_value = search.distance(&next);
-        if std::env::var("DBG").is_ok() { eprintln!("  walk {iteration} value {value:.5} -> {next_value:.5} trust {trust:.2e} len {length:.2e} f {fraction} contacts {}", search.scratch.contacts.len()); }
         let gain = 1.0 - next_value / value;
         pose = next;
         value = next_value;
@@ -94,9 +93,11 @@ fn step(
     margin: f64,
     clearance: f64,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
-    let found = linear_step(search, pose, trust, margin, clearance)?;
+    let found = match search.options.walk {
+        Walk::Linearised => linear_step(search, pose, trust, margin, clearance)?,
+        Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
+    };
     let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
-    if std::env::var("DBG").is_ok() { for (p,c) in search.scratch.primitives.iter().zip(&search.scratch.contacts) { eprintln!("      {:?} {:?} gap {:.3e} -> {:.3e}", c.feature_a, c.feature_b, c.gap, p.gap(&(found.applied(pose)*pose.inverse()))); } }
     let mut fraction = 1.0;
     for _ in 0..6 {
         let next = found.scaled(fraction).applied(pose);
@@ -108,16 +109,22 @@ fn step(
     None
 }
 
-/// The best motion under the contacts. What the linearisation leaves out is looked up in the primitive constraints themselves, and
-/// the program is solved again with that much less room (a second-order correction).
-fn linear_step(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64, clearance: f64) -> Option<Twist> {
+/// Looks for contacts at a pose, with those that a step may bring about.
+pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) {
     let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
     search.pair.contacts_when_tilted(pose, margin, tilt, &mut search.scratch.contacts);
     search.limit_contacts();
     let (a, b) = (search.pair.a(), search.pair.b());
-    let Scratch { contacts, primitives, constraints, memory } = &mut *search.scratch;
+    let Scratch { contacts, primitives, .. } = &mut *search.scratch;
     primitives.clear();
     primitives.extend(contacts.iter().map(|c| Primitive::new(c, a, b, pose)));
+}
+
+/// The best motion under the contacts. What the linearisation leaves out is looked up in the primitive constraints themselves, and
+/// the program is solved again with that much less room (a second-order correction).
+fn linear_step(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64, clearance: f64) -> Option<Twist> {
+    see(search, pose, trust, margin);
+    let Scratch { contacts, primitives, constraints, memory } = &mut *search.scratch;
     constraints.clear();
     constraints.extend(contacts.iter().map(|c| Constraint { point: c.on_a, normal: c.normal, gap: c.gap - clearance }));
     let options = StepOptions { trust, tolerance: 1e-3 };

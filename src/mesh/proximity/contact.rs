@@ -57,11 +57,26 @@ impl Pair<'_> {
     /// Gives up after `work` pairs of triangles, and returns whether it did not.
     ///
     /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
-    pub fn overlaps(&mut self, pose: &Isometry3<f64>, reach: f64, tilt: f64, work: usize, out: &mut Vec<Contact>) -> bool {
+    pub fn overlaps(
+        &mut self,
+        pose: &Isometry3<f64>,
+        reach: f64,
+        tilt: f64,
+        work: usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
         self.collect(pose, reach, tilt.max(CONE), self.a.is_solid() && self.b.is_solid(), work, out)
     }
 
-    fn collect(&mut self, pose: &Isometry3<f64>, margin: f64, tilt: f64, through: bool, work: usize, out: &mut Vec<Contact>) -> bool {
+    fn collect(
+        &mut self,
+        pose: &Isometry3<f64>,
+        margin: f64,
+        tilt: f64,
+        through: bool,
+        work: usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
         self.counters.contact += 1;
         out.clear();
         if !is_usable(pose) || !(margin >= 0.0) {

@@ -24,8 +24,14 @@ const WORK: usize = 12000;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
+/// A free pose from the query's.
+pub fn push_out(search: &mut Search) -> Option<Isometry3<f64>> {
+    let start = search.start;
+    push_out_from(search, &start)
+}
+
 /// A free pose from one that overlaps.
-pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
     let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
     let mut clearance = CLEARANCE * search.size;
@@ -62,7 +68,6 @@ pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<
         let options = StepOptions { trust: TRUST * search.size, tolerance: 1e-2 };
         let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
         pose = step.twist.applied(&pose);
-        if std::env::var("DBG").is_ok() { eprintln!("  push reach {:.3} n {} neg {} end {:?} value {:.4} viol {:.2e}", reach, scratch.contacts.len(), scratch.contacts.iter().filter(|c| c.gap<0.0).count(), step.end, search.metric.distance(&search.start, &pose), step.violation); }
         if search.distance(&pose) > 1.2 * search.upper {
             return None;
         }
