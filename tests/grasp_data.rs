@@ -7,13 +7,15 @@
 mod common;
 mod grasp_common;
 
+use common::memory::Memory;
 use grasp_common::{recorded, vector};
 use nalgebra::SMatrix;
 use qdist::grasp::{
-    ActiveForces, Contact, Friction, HandContact, Jacobian, Norm, Primitive, Subspace, WrenchFrame, WrenchSet,
+    ActiveForces, Contact, Friction, HandContact, Jacobian, Norm, Primitive, Refined, Subspace, WrenchFrame, WrenchSet,
     active_wrenches, default_tolerance, wrenches,
 };
-use qdist::{Real, Vector};
+use qdist::qset::Ball;
+use qdist::{Options, Real, Vector};
 use serde_json::Value;
 
 fn numbers(v: &Value) -> Vec<f64> {
@@ -217,4 +219,36 @@ fn a_grasp_that_does_not_hold_has_a_direction_without_resistance() {
         }
     }
     assert!(found >= 2);
+}
+
+/// From an answer known to 1 %, the references themselves: to 1e-9, where the refined minimum is smooth.
+#[test]
+fn refined_answers_are_the_references() {
+    let Some(grasps) = recorded("refined_answers_are_the_references") else { return };
+    let (mut compared, mut kinks) = (0, 0);
+    for v in &grasps {
+        let grasp = read::<f64>(v);
+        for r in v["refs"].as_array().unwrap() {
+            let d = r["d"].as_f64().unwrap();
+            if r["Q"]["type"] != "ball" || !r["Q"]["S"].is_null() || !(d > 1e-6) {
+                continue;
+            }
+            let primitives = if r["set"] == "Wa" { &grasp.active } else { &grasp.passive };
+            let (set, ball) = (WrenchSet::new(primitives, norm(r)), Ball::unit());
+            let options = Options { relative: 1e-2, ..Options::default() };
+            let mut memory = Memory::new::<f64, 6>(4096, 4096);
+            let answer = memory.solver::<f64, 6>().solve_in_span(&set, &ball, &options);
+            let refined = Refined::new(&set, &ball, &answer);
+            let found = set.value(&refined.answer.direction);
+            assert!(found >= d * (1.0 - 1e-9), "{} {} {found} {d}", grasp.id, r["set"]);
+            assert!(refined.answer.lower <= d && d <= refined.answer.upper + 1e-9 * d);
+            println!("{} {} {:?}: {:?} {:e}", grasp.id, r["set"], norm(r), refined.kink, found / d - 1.0);
+            match refined.kink {
+                // Another minimum may be within the bracket.
+                None if found < d * (1.0 + 1e-9) => compared += 1,
+                _ => kinks += 1,
+            }
+        }
+    }
+    assert!(compared >= 10, "{compared} of {}", compared + kinks);
 }

@@ -1,7 +1,7 @@
 //! How the joints of a finger move a contact.
 
 use super::contact::ContactError;
-use super::svd::Svd;
+use super::svd::{Svd, dot};
 use super::{check_tolerance, usable};
 use crate::scalar::Real;
 
@@ -72,6 +72,12 @@ impl<T: Real> Jacobian<T> {
         Ok(Self { rows, joints: actuators })
     }
 
+    /// Column j, with its spin entry times `torque_scale`: what a force, moments divided by the scale, does to joint j.
+    pub(super) fn column(&self, j: usize, torque_scale: T) -> [T; 4] {
+        let [n, o, t, spin] = self.rows.each_ref().map(|row| row.get(j).copied().unwrap_or(T::zero()));
+        [n, o, t, spin * torque_scale]
+    }
+
     /// The number q of columns.
     pub fn joints(&self) -> usize {
         self.joints
@@ -99,14 +105,31 @@ impl<T: Real> Jacobian<T> {
     /// pseudo-inverse J^{+T}: the columns of A in eq. 10.
     pub(super) fn range(&self, torque_scale: T, tolerance: T) -> Result<(usize, [[T; 4]; 4]), ContactError> {
         check_tolerance(tolerance)?;
+        let (svd, _) = self.decomposed(torque_scale);
+        let [sigma, ..] = svd.sigma;
+        Ok((svd.rank(tolerance * sigma), svd.v))
+    }
+
+    /// J^+ f, from as many singular values as its rank: the shortest c with J c = f for an f in the range. `f` and the
+    /// rows of J with moments divided by the torque scale.
+    pub(super) fn pseudo_inverse(&self, torque_scale: T, rank: usize, f: &[T; 4]) -> [T; MAX_JOINTS] {
+        let (svd, largest) = self.decomposed(torque_scale);
+        let mut c = [T::zero(); MAX_JOINTS];
+        for ((image, v), sigma) in svd.image.iter().zip(&svd.v).zip(svd.sigma).take(rank) {
+            let share = dot(v, f) / sigma / sigma / largest;
+            c.iter_mut().zip(image).for_each(|(c, &x)| *c += share * x);
+        }
+        c
+    }
+
+    /// The singular value decomposition of J^T / m, and m, the largest entry: J^T V has orthogonal columns.
+    fn decomposed(&self, torque_scale: T) -> (Svd<T, MAX_JOINTS, 4>, T) {
         let [n, o, t, spin] = self.rows;
         let rows = [n, o, t, spin.map(|x| x * torque_scale)];
         let largest = rows.iter().flatten().fold(T::zero(), |m, x| m.at_least(x.abs()));
+        // The rows of J are the columns of J^T.
         let scaled = rows.map(|row| row.map(|x| if largest > T::zero() { x / largest } else { x }));
-        // The rows of J are the columns of J^T, and J^T V has orthogonal columns.
-        let svd = Svd::new(scaled);
-        let [sigma, ..] = svd.sigma;
-        Ok((svd.rank(tolerance * sigma), svd.v))
+        (Svd::new(scaled), largest)
     }
 }
 

@@ -42,11 +42,6 @@ impl<T: Real> Subspace<T> {
     /// # Errors
     /// [`ContactError::Tolerance`].
     pub fn new(primitives: &[Primitive<T>], tolerance: T) -> Result<Self, ContactError> {
-        Self::of(primitives.iter().copied(), tolerance)
-    }
-
-    /// The same for primitives that are made on the way.
-    pub(crate) fn of(primitives: impl Iterator<Item = Primitive<T>>, tolerance: T) -> Result<Self, ContactError> {
         check_tolerance(tolerance)?;
         let mut triangle = Triangle::new();
         let mut touched = [false; 6];
@@ -78,6 +73,11 @@ impl<T: Real> Subspace<T> {
     /// The basis: unit vectors, orthogonal to each other.
     pub fn basis(&self) -> &[[T; 6]] {
         self.basis.get(..self.dimension).unwrap_or(&self.basis)
+    }
+
+    /// An orthonormal basis of the complement of R.
+    pub(super) fn complement(&self) -> &[[T; 6]] {
+        self.basis.get(self.dimension..).unwrap_or(&[])
     }
 
     /// The basis as columns of a matrix R, 6 x K; `None` unless K is the dimension. A point x of R^K is the wrench R x.

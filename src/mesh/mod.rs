@@ -25,6 +25,7 @@
 //! ```text
 //! depth                       generalized penetration depth: seeds, walks, bracket
 //!  model                      a body: a mesh with its metrics
+//! certificate                 how far A must move at the least: convex pieces inside both, and the core's depth
 //! metric                      how far a pose is from another: DISP, object norm
 //!  optimize                   the best small motion that contacts allow
 //!   mass  hull                volume, centre, inertia; vertices of the convex hull
@@ -43,6 +44,7 @@
 //! surface only. [`Report`] says which, and what is wrong where.
 
 mod bvh;
+pub mod certificate;
 pub mod check;
 mod cones;
 mod depth;

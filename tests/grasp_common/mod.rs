@@ -3,6 +3,8 @@
 // Each test uses a part.
 #![allow(dead_code)]
 
+pub mod socp;
+
 use qdist::grasp::{Contact, Friction, WrenchFrame};
 use qdist::{Real, Vector};
 
