@@ -39,6 +39,8 @@ pub(super) struct Search<'s, 'm, 'w> {
 /// What an effort means.
 struct Plan {
     rays: rays::Plan,
+    /// Pairs of triangles that pushing out may look at in one query.
+    work: usize,
     /// A walk's least gain.
     gain: f64,
     /// A walk is given up when it will not come below this multiple of the best.
@@ -48,9 +50,9 @@ struct Plan {
 fn plan(effort: Effort) -> Plan {
     let rays = |translations, screws, worse, seeds| rays::Plan { translations, screws, worse, seeds };
     match effort {
-        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), gain: 1e-3, hope: 1.0 },
-        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), gain: 1e-4, hope: 1.0 },
-        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), gain: 1e-5, hope: 1.2 },
+        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), work: 4_000, gain: 1e-3, hope: 1.0 },
+        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), work: 12_000, gain: 1e-4, hope: 1.0 },
+        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), work: 200_000, gain: 1e-5, hope: 1.2 },
     }
 }
 
@@ -106,20 +108,20 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         for pose in self.options.poses {
             self.walk_from(pose, &plan);
         }
+        let seeds = match escape {
+            Some(escape) if self.options.rays => rays::cast(&mut self, &plan.rays, &escape),
+            _ => escape.into_iter().collect(),
+        };
+        // Beside the rays' seeds, not in competition with them; given up when it leads farther than they do.
         if self.options.push_out
-            && let Some(seed) = pushout::push_out(&mut self)
+            && let Some(seed) = pushout::push_out(&mut self, plan.work)
         {
             walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
-        if self.options.rays
-            && let Some(escape) = escape
-        {
-            let seeds = rays::cast(&mut self, &plan.rays, &escape);
-            for (k, seed) in seeds.iter().enumerate() {
-                self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
-                let hopeless = self.upper * plan.hope;
-                walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
-            }
+        for (k, seed) in seeds.iter().enumerate() {
+            self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
+            let hopeless = self.upper * plan.hope;
+            walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
         }
         self.polish();
         let outcome = match self.stop {
@@ -198,7 +200,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         if !usable(pose) || !self.goes_on() {
             return;
         }
-        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose) } else { Some(*pose) };
+        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose, plan.work) } else { Some(*pose) };
         if let Some(seed) = seed {
             walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }

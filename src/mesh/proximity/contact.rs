@@ -42,19 +42,19 @@ impl Pair<'_> {
     ///
     /// Parallel faces and edges touch along an area; its corners are the contacts.
     pub fn contacts(&mut self, pose: &Isometry3<f64>, margin: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, margin, CONE, false, usize::MAX, out);
+        self.collect(pose, margin, CONE, false, &mut { usize::MAX }, out);
     }
 
     /// The same with those that become local minima when A turns by up to an angle of this sine.
     pub fn contacts_when_tilted(&mut self, pose: &Isometry3<f64>, margin: f64, tilt: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, margin, tilt.max(CONE), false, usize::MAX, out);
+        self.collect(pose, margin, tilt.max(CONE), false, &mut { usize::MAX }, out);
     }
 
     /// The same of two solids that overlap: contacts with a negative gap are features that have passed through each other by at most
     /// `reach`, vertex-face, face-vertex and edge-edge. Their normals are those of the contacts that they were, so that to move
     /// by minus the gap along the normal undoes them.
     ///
-    /// Gives up after `work` pairs of triangles, and returns whether it did not.
+    /// Looks at `work` pairs of triangles at most, and subtracts those that it looked at; returns whether that was enough.
     ///
     /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
     pub fn overlaps(
@@ -62,7 +62,7 @@ impl Pair<'_> {
         pose: &Isometry3<f64>,
         reach: f64,
         tilt: f64,
-        work: usize,
+        work: &mut usize,
         out: &mut Vec<Contact>,
     ) -> bool {
         self.collect(pose, reach, tilt.max(CONE), self.a.is_solid() && self.b.is_solid(), work, out)
@@ -74,7 +74,7 @@ impl Pair<'_> {
         margin: f64,
         tilt: f64,
         through: bool,
-        work: usize,
+        work: &mut usize,
         out: &mut Vec<Contact>,
     ) -> bool {
         self.counters.contact += 1;
@@ -89,12 +89,11 @@ impl Pair<'_> {
             (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y, tilt),
             _ => false,
         };
-        let mut work = work;
         let walked = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
-            work -= 1;
-            if work == 0 {
+            if *work == 0 {
                 return ControlFlow::Break(());
             }
+            *work -= 1;
             let on_s = relative.place_all(a.corners(s));
             if plane_gap_squared(&on_s, b.corners(t)) <= enough {
                 candidates((a, s, &on_s), (b, t, b.corners(t)), |x| {

@@ -1,7 +1,8 @@
 //! Pushing out what penetrates: the walk from the inside, for narrow passages that no ray finds.
 //!
 //! At a pose that overlaps, features that have passed through each other are contacts with negative gaps, and the metric's step finds the
-//! motion that is least from the start and undoes them all, to first order. A few steps lead to a free pose, if there is one near by, or
+//! motion that is least from the start and undoes them all, to first order. Features are looked for within a reach: it grows when
+//! nothing is seen though the bodies overlap, and is halved where a query would have too much to look at. A few steps lead to a free pose, if there is one near by, or
 //! to a value that says that this is no way out.
 
 use super::super::search::Search;
@@ -13,25 +14,25 @@ use nalgebra::Isometry3;
 const STEPS: usize = 12;
 /// How deep features are looked for, in diagonals of A.
 const REACH: f64 = 0.05;
+/// And at least, where there is so much to see that less must do.
+const LEAST_REACH: f64 = 0.01;
 /// The gap that is aimed at first, in diagonals of A.
 const CLEARANCE: f64 = 1e-3;
-/// And at least, where there is so much to see that less must do.
-const LEAST_REACH: f64 = 2e-3;
 /// What counts as a local minimum, as a sine.
 const TILT: f64 = 0.1;
-/// Pairs of triangles at most in a query.
-const WORK: usize = 12000;
+/// It is given up beyond this multiple of the best value: the walk that would follow gains about as much.
+const HOPE: f64 = 1.2;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
 /// A free pose from the query's.
-pub fn push_out(search: &mut Search) -> Option<Isometry3<f64>> {
+pub fn push_out(search: &mut Search, work: usize) -> Option<Isometry3<f64>> {
     let start = search.start;
-    push_out_from(search, &start)
+    push_out_from(search, &start, work)
 }
 
-/// A free pose from one that overlaps.
-pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+/// A free pose from one that overlaps. `work` is how many pairs of triangles a query may look at.
+pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>, work: usize) -> Option<Isometry3<f64>> {
     // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
     let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
     let mut clearance = CLEARANCE * search.size;
@@ -42,7 +43,12 @@ pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>) -> Option<Isome
         if !search.goes_on() {
             return None;
         }
-        while !search.pair.overlaps(&pose, reach, TILT, WORK, &mut search.scratch.contacts) {
+        loop {
+            let mut left = work;
+            let whole = search.pair.overlaps(&pose, reach, TILT, &mut left, &mut search.scratch.contacts);
+            if whole {
+                break;
+            }
             reach *= 0.5;
             most = reach;
             if reach < LEAST_REACH * search.size {
@@ -68,7 +74,7 @@ pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>) -> Option<Isome
         let options = StepOptions { trust: TRUST * search.size, tolerance: 1e-2 };
         let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
         pose = step.twist.applied(&pose);
-        if search.distance(&pose) > 1.2 * search.upper {
+        if search.distance(&pose) > HOPE * search.upper {
             return None;
         }
         if !search.pair.collides(&pose) {
