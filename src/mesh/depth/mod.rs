@@ -69,7 +69,7 @@ pub struct DepthOptions<'a> {
     pub seed: u64,
     /// The query ends when `upper - lower` is at most this fraction of `upper`.
     pub relative: f64,
-    /// The query ends after this many collision, contact and distance queries, but for a few.
+    /// The query ends after this many collision, contact and distance queries, but for some tens to bring the best pose to contact.
     pub max_queries: u64,
     /// How the boundary is searched.
     pub walk: Walk,

@@ -114,6 +114,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         };
         // Beside the rays' seeds, not in competition with them; given up when it leads farther than they do.
         if self.options.push_out
+            && self.goes_on()
             && let Some(seed) = pushout::push_out(&mut self, plan.work)
         {
             walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });

@@ -5,9 +5,12 @@
 //! one normal, along the gap; so a corner that faces a corner is one plane that either may slide along, and unions of constraints
 //! (section IV-A) arise only where a gap vanishes, which the clearance prevents.
 //!
-//! The step is tried; as long as it collides it is halved, and the trust region shrinks with it. The clearance pays for what the linearisation
-//! leaves out, so it shrinks with the trust region too: both vanish as the walk converges. In the end A slides along the screw
-//! to the start until it touches.
+//! Contacts that would become local minima when A turns a little count too: where a corner lies near an edge, the corner on the face and the
+//! edge on the edge are minima in turns, and a walk that sees only one of them at a time goes to and fro between both.
+//!
+//! The step is tried; as long as it collides it is halved, and the trust region shrinks with it. The clearance pays for what linearisation
+//! and second-order correction leave out, so it shrinks with the trust region too: both vanish as the walk converges. The margin stays: contacts that
+//! are out of sight would stop the next step.
 
 use super::contact_space::Primitive;
 use super::sampling::sampled_step;
@@ -42,8 +45,11 @@ pub struct Bounds {
     pub hopeless: f64,
 }
 
-/// Walks from a free pose; offers every improvement of the best. Returns where it ends, a free pose.
-pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
+/// Walks from a free pose, and offers where it ends.
+pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) {
+    if !search.goes_on() {
+        return;
+    }
     search.walks += 1;
     let margin = MARGIN * search.size;
     let mut pose = search.slide(from, 0.2 * margin);
@@ -81,7 +87,6 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
         }
     }
     search.take(&pose);
-    pose
 }
 
 /// One step: the next pose, the length of the full step, and the fraction of it that was free.
