@@ -50,8 +50,8 @@ extern "C" {
 
 // Functions that allocate. They may be called by all threads that call the library, at the same time, and must not unwind, longjmp, or call it.
 typedef struct {
-    // Memory of `size` bytes, at least 1, aligned to `align`, a power of two (8 or 16 in practice); or NULL when there is none. Then the
-    // process is aborted: the library's containers cannot go on without.
+    // Memory of `size` bytes, at least 1, aligned to `align`, a power of two, which may be more than malloc's own (a cache line); or NULL
+    // when there is none. Then the process is aborted: the library's containers cannot go on without.
     void *(*alloc)(void *user, size_t size, size_t align);
     // Takes back what `alloc` returned for the same size and alignment.
     void (*free)(void *user, void *memory, size_t size, size_t align);
@@ -291,7 +291,7 @@ typedef struct {
     // Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess. NULL if pose_count is 0.
     const qdist_mesh_pose *poses;
     // QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
-    // then. NULL (default): A's own. The volume only scales the inertia.
+    // then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
     const qdist_mesh_mass *mass;
     // NULL (default): nothing is called.
     qdist_mesh_watch watch;

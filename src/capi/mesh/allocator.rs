@@ -15,8 +15,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_allocator {
-    /// Memory of `size` bytes, at least 1, aligned to `align`, a power of two (8 or 16 in practice); or NULL when there is none. Then the
-    /// process is aborted: the library's containers cannot go on without.
+    /// Memory of `size` bytes, at least 1, aligned to `align`, a power of two, which may be more than malloc's own (a cache line); or NULL
+    /// when there is none. Then the process is aborted: the library's containers cannot go on without.
     pub alloc: Option<unsafe extern "C" fn(user: *mut c_void, size: usize, align: usize) -> *mut c_void>,
     /// Takes back what `alloc` returned for the same size and alignment.
     pub free: Option<unsafe extern "C" fn(user: *mut c_void, memory: *mut c_void, size: usize, align: usize)>,

@@ -12,7 +12,8 @@ use super::guard::guard;
 use super::model::qdist_mesh_mass;
 use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
 use crate::mesh::mass::MassProperties;
-use crate::mesh::metric::{Metric, Sigma};
+use crate::mesh::metric::{BodyFrame, Metric, Sigma};
+use crate::mesh::optimize::Quadratic;
 use crate::mesh::{DepthOptions, Effort, MeshDepth, Model, Outcome, Progress};
 use core::ffi::{c_char, c_void};
 use core::ptr::{null, null_mut};
@@ -127,7 +128,7 @@ pub struct qdist_mesh_options {
     /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess. NULL if pose_count is 0.
     pub poses: *const qdist_mesh_pose,
     /// QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
-    /// then. NULL (default): A's own. The volume only scales the inertia.
+    /// then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
     pub mass: *const qdist_mesh_mass,
     /// NULL (default): nothing is called.
     pub watch: qdist_mesh_watch,
@@ -250,7 +251,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_depth(
 pub(super) struct Query {
     metric: qdist_mesh_metric,
     /// The caller's own mass, with QDIST_MESH_SIGMA.
-    mass: Option<Sigma>,
+    mass: Option<Weighted>,
     effort: Effort,
     seed: u64,
     max_queries: u64,
@@ -296,7 +297,7 @@ impl Query {
         }
         let mass = match options.metric == QDIST_MESH_SIGMA && !options.mass.is_null() {
             // SAFETY: the caller's promise.
-            true => Some(sigma(unsafe { shared(options.mass) }?)?),
+            true => Some(Weighted::new(unsafe { shared(options.mass) }?)?),
             false => None,
         };
         let poses = match options.pose_count {
@@ -322,7 +323,7 @@ impl Query {
 
     pub(super) fn metric<'q>(&'q self, a: &'q Model) -> Check<&'q dyn Metric> {
         match (self.metric, &self.mass) {
-            (QDIST_MESH_SIGMA, Some(sigma)) => Ok(sigma),
+            (QDIST_MESH_SIGMA, Some(weighted)) => Ok(weighted),
             (QDIST_MESH_SIGMA, None) => a.sigma().map(|sigma| sigma as _).ok_or(QDIST_ERROR_MESH_NOT_SOLID),
             _ => Ok(a.disp()),
         }
@@ -353,25 +354,46 @@ impl Query {
     }
 }
 
-/// The metric of the caller's own mass: a positive volume, and an inertia tensor as a body can have it.
-fn sigma(mass: &qdist_mesh_mass) -> Check<Sigma> {
-    finite(&mass.centre)?;
-    finite(&mass.inertia)?;
-    finite(&[mass.volume])?;
-    if mass.centre.iter().any(|x| x.abs() > crate::mesh::MAX_COORDINATE) {
-        return Err(QDIST_ERROR_NONFINITE);
+/// The root mean square over a mass of the caller's. What is proved of A's own is not of this one, so it is a metric of its own, without a
+/// lower bound.
+struct Weighted(Sigma);
+
+impl Weighted {
+    /// Wants a positive volume, and an inertia tensor as a body can have it.
+    fn new(mass: &qdist_mesh_mass) -> Check<Self> {
+        finite(&mass.centre)?;
+        finite(&mass.inertia)?;
+        finite(&[mass.volume])?;
+        if mass.centre.iter().any(|x| x.abs() > crate::mesh::MAX_COORDINATE) {
+            return Err(QDIST_ERROR_NONFINITE);
+        }
+        let inertia = Matrix3::from_row_slice(&mass.inertia);
+        let size = inertia.amax();
+        if !(mass.volume > 0.0 && (size / mass.volume).is_normal()) {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        // Mass has no negative second moments, trace / 2 - I, and here it does not lie on a line.
+        let scaled = inertia / size;
+        let principal = scaled.symmetric_eigenvalues();
+        let is_body = principal.min() > 1e-9 && 2.0 * principal.max() <= principal.sum() + 1e-9;
+        if (scaled - scaled.transpose()).amax() > 1e-9 || !is_body {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let centre = Point3::from(mass.centre);
+        Ok(Weighted(Sigma::new(&MassProperties { volume: mass.volume, centre, inertia })))
     }
-    let inertia = Matrix3::from_row_slice(&mass.inertia);
-    let size = inertia.amax();
-    if !(mass.volume > 0.0 && (size / mass.volume).is_normal()) {
-        return Err(QDIST_ERROR_ARGUMENT);
+}
+
+impl Metric for Weighted {
+    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        self.0.distance(from, to)
     }
-    // Mass has no negative second moments, trace / 2 - I, and here it does not lie on a line.
-    let scaled = inertia / size;
-    let principal = scaled.symmetric_eigenvalues();
-    let is_body = principal.min() > 1e-9 && 2.0 * principal.max() <= principal.sum() + 1e-9;
-    if (scaled - scaled.transpose()).amax() > 1e-9 || !is_body {
-        return Err(QDIST_ERROR_ARGUMENT);
+
+    fn frame(&self) -> &BodyFrame {
+        self.0.frame()
     }
-    Ok(Sigma::new(&MassProperties { volume: mass.volume, centre: Point3::from(mass.centre), inertia }))
+
+    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
+        self.0.model(from, at)
+    }
 }

@@ -22,6 +22,14 @@ pub struct qdist_mesh_pair {
     b: Arc<Model>,
 }
 
+/// Threads may pass pairs on and share meshes, as the header says.
+const _: () = {
+    const fn passed<T: Send>() {}
+    const fn shared<T: Send + Sync>() {}
+    passed::<qdist_mesh_pair>();
+    shared::<qdist_mesh>();
+};
+
 impl qdist_mesh_pair {
     fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
         // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the solver,
