@@ -6,13 +6,16 @@
 //!
 //! (Zhang, Kim and Manocha 2007). The metric is a length: the largest displacement of A's points, or their root mean
 //! square. Local minima abound, and no practical method finds the least of them with certainty; so the answer is a bracket. The upper bound
-//! is the metric of a pose that is proved free by the solid test, and the lower bound holds whatever the search missed.
+//! is the metric of a pose that is proved free by the solid test, and the lower bound is that of the convex pieces of both bodies (module
+//! [`certificate`](super::certificate)), which holds whatever the search missed. It is 0 for models without pieces
+//! ([`Model::with_pieces`]).
 //!
 //! # The search
 //!
 //! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, near stored contact
 //!   configurations, or given by the caller.
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
+//! * `contact_space` knows what a contact says of motions near by, and `sampling` is the walk's other kind of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
@@ -31,26 +34,21 @@
 //! # Ok::<(), qdist::mesh::ModelError>(())
 //! ```
 
+mod contact_space;
 mod random;
+mod sampling;
 mod search;
 mod seeds;
+mod walk;
 
+use super::certificate::Certifier;
+pub use super::certificate::Effort;
 use super::metric::Metric;
-use super::{Counters, Distance, Model, Pair};
+use super::optimize::{Constraint, StepMemory};
+use super::{Contact, Counters, Distance, Model, Pair};
+use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
-
-/// How much is done for a depth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// A few seeds: an upper bound at once.
-    Fast,
-    /// What finds nearly all minima.
-    #[default]
-    Default,
-    /// Several times as much, and a lower bound with care.
-    Heavy,
-}
 
 /// How the boundary of the free space is searched around a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -158,17 +156,38 @@ pub struct Progress<'a> {
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) -> bool + 'a);
 
 /// Two models and the memory of their queries.
-#[derive(Clone, Debug)]
 pub struct DepthSolver<'m> {
     a: &'m Model,
     b: &'m Model,
     pair: Pair<'m>,
+    scratch: Scratch,
+    certifier: Certifier,
+}
+
+/// Memory that walks reuse.
+#[derive(Clone, Debug)]
+struct Scratch {
+    contacts: Vec<Contact>,
+    primitives: Vec<Primitive>,
+    constraints: Vec<Constraint>,
+    memory: StepMemory,
 }
 
 impl<'m> DepthSolver<'m> {
     /// A moves, B rests.
     pub fn new(a: &'m Model, b: &'m Model) -> DepthSolver<'m> {
-        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()) }
+        DepthSolver {
+            a,
+            b,
+            pair: Pair::new(a.mesh(), b.mesh()),
+            certifier: Certifier::new(),
+            scratch: Scratch {
+                contacts: Vec::new(),
+                primitives: Vec::new(),
+                constraints: Vec::new(),
+                memory: StepMemory::new(walk::CONTACTS),
+            },
+        }
     }
 
     /// The body that moves.

@@ -1,15 +1,23 @@
 //! The state of one query: the best pose so far, the budget, and the order of things.
 
 use super::random::Random;
-use super::seeds::rays;
-use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Watch};
-use crate::mesh::metric::Metric;
-use crate::mesh::{Counters, Pair, Screw};
+use super::seeds::{pushout, rays};
+use super::walk::{Bounds, CONTACTS, walk};
+use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
+use crate::mesh::certificate::Certifier;
+use crate::mesh::metric::{Certificate, Metric, Sigma};
+use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::Isometry3;
 
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
+    pub scratch: &'s mut Scratch,
+    certifier: &'s mut Certifier,
+    a: &'m Model,
+    b: &'m Model,
     pub metric: &'s dyn Metric,
+    /// A's object norm, if it has one.
+    pub sigma: Option<&'m Sigma>,
     pub options: &'s DepthOptions<'s>,
     watch: Option<Watch<'w>>,
     /// The query's pose.
@@ -28,6 +36,26 @@ pub(super) struct Search<'s, 'm, 'w> {
     before: Counters,
 }
 
+/// What an effort means.
+struct Plan {
+    rays: rays::Plan,
+    /// Pairs of triangles that pushing out may look at in one query.
+    work: usize,
+    /// A walk's least gain.
+    gain: f64,
+    /// A walk is given up when it will not come below this multiple of the best.
+    hope: f64,
+}
+
+fn plan(effort: Effort) -> Plan {
+    let rays = |translations, screws, worse, seeds| rays::Plan { translations, screws, worse, seeds };
+    match effort {
+        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), work: 4_000, gain: 1e-3, hope: 1.0 },
+        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), work: 12_000, gain: 1e-4, hope: 1.0 },
+        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), work: 200_000, gain: 1e-5, hope: 1.2 },
+    }
+}
+
 fn total(c: &Counters) -> u64 {
     c.collision + c.contact + c.distance
 }
@@ -44,7 +72,12 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         Search {
             size: solver.a.mesh().diagonal(),
             pair: &mut solver.pair,
+            scratch: &mut solver.scratch,
+            certifier: &mut solver.certifier,
+            a: solver.a,
+            b: solver.b,
             metric,
+            sigma: solver.a.sigma(),
             options,
             watch,
             start: *pose,
@@ -69,13 +102,28 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let distance = self.pair.distance(&self.start);
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
+        self.lower = self.certify();
+        let plan = plan(self.options.effort);
+        let escape = rays::escape(&mut self);
         for pose in self.options.poses {
-            self.offer_slid(pose);
+            self.walk_from(pose, &plan);
         }
-        rays::escape(&mut self);
-        if self.options.rays {
-            rays::cast(&mut self);
+        let seeds = match escape {
+            Some(escape) if self.options.rays => rays::cast(&mut self, &plan.rays, &escape),
+            _ => escape.into_iter().collect(),
+        };
+        // Beside the rays' seeds, not in competition with them; given up when it leads farther than they do.
+        if self.options.push_out
+            && let Some(seed) = pushout::push_out(&mut self, plan.work)
+        {
+            walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
+        for (k, seed) in seeds.iter().enumerate() {
+            self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
+            let hopeless = self.upper * plan.hope;
+            walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
+        }
+        self.polish();
         let outcome = match self.stop {
             Some(outcome) => outcome,
             None if self.upper == f64::INFINITY => Outcome::Stuck,
@@ -125,6 +173,15 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         self.stop.is_none()
     }
 
+    /// Keeps as many contacts as a step can take, the nearest.
+    pub fn limit_contacts(&mut self) {
+        let contacts = &mut self.scratch.contacts;
+        if contacts.len() > CONTACTS {
+            contacts.sort_by(|x, y| x.gap.abs().total_cmp(&y.gap.abs()));
+            contacts.truncate(CONTACTS);
+        }
+    }
+
     pub fn distance(&self, pose: &Isometry3<f64>) -> f64 {
         self.metric.distance(&self.start, pose)
     }
@@ -138,10 +195,32 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Takes a pose if it is free, after it has slid towards the start.
-    fn offer_slid(&mut self, pose: &Isometry3<f64>) {
-        if usable(pose) && self.goes_on() && !self.pair.collides(pose) {
-            let slid = self.slide(pose, 1e-6 * self.size);
+    /// Walks from the caller's pose, or from where pushing out from there leads.
+    fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
+        if !usable(pose) || !self.goes_on() {
+            return;
+        }
+        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose, plan.work) } else { Some(*pose) };
+        if let Some(seed) = seed {
+            walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+        }
+    }
+
+    /// The lower bound, from the pieces of both bodies.
+    fn certify(&mut self) -> f64 {
+        let (Some(a), Some(b)) = (self.a.pieces(), self.b.pieces()) else { return 0.0 };
+        match self.metric.certificate() {
+            Certificate::None => 0.0,
+            Certificate::Disp => self.certifier.disp(a, b, &self.start, self.options.effort),
+            Certificate::SqrtSigma => self.certifier.sqrt_sigma(a, b, &self.start, self.options.effort),
+        }
+    }
+
+    /// Brings the best pose to where it touches.
+    fn polish(&mut self) {
+        if self.upper.is_finite() {
+            let pose = self.pose;
+            let slid = self.slide(&pose, 1e-6 * self.size);
             self.take(&slid);
         }
     }

@@ -10,7 +10,7 @@
 use super::super::{EdgeKind, Feature, Mesh};
 use super::Pair;
 use super::candidate::{Candidate, candidates};
-use super::relative::{Relative, is_usable, walk};
+use super::relative::{Relative, is_usable, walk_culled};
 use super::triangle::plane_gap_squared;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ pub struct Contact {
     pub on_b: Point3<f64>,
     /// Unit direction from B to A.
     pub normal: Vector3<f64>,
-    /// Distance of the points, at least 0.
+    /// Distance of the points, at least 0; negative where they have passed through each other ([`Pair::overlaps`]).
     pub gap: f64,
 }
 
@@ -42,20 +42,63 @@ impl Pair<'_> {
     ///
     /// Parallel faces and edges touch along an area; its corners are the contacts.
     pub fn contacts(&mut self, pose: &Isometry3<f64>, margin: f64, out: &mut Vec<Contact>) {
+        self.collect(pose, margin, CONE, false, &mut { usize::MAX }, out);
+    }
+
+    /// The same with those that become local minima when A turns by up to an angle of this sine.
+    pub fn contacts_when_tilted(&mut self, pose: &Isometry3<f64>, margin: f64, tilt: f64, out: &mut Vec<Contact>) {
+        self.collect(pose, margin, tilt.max(CONE), false, &mut { usize::MAX }, out);
+    }
+
+    /// The same of two solids that overlap: contacts with a negative gap are features that have passed through each other by at most
+    /// `reach`, vertex-face, face-vertex and edge-edge. Their normals are those of the contacts that they were, so that to move
+    /// by minus the gap along the normal undoes them.
+    ///
+    /// Looks at `work` pairs of triangles at most, and subtracts those that it looked at; returns whether that was enough.
+    ///
+    /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
+    pub fn overlaps(
+        &mut self,
+        pose: &Isometry3<f64>,
+        reach: f64,
+        tilt: f64,
+        work: &mut usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
+        self.collect(pose, reach, tilt.max(CONE), self.a.is_solid() && self.b.is_solid(), work, out)
+    }
+
+    fn collect(
+        &mut self,
+        pose: &Isometry3<f64>,
+        margin: f64,
+        tilt: f64,
+        through: bool,
+        work: &mut usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
         self.counters.contact += 1;
         out.clear();
         if !is_usable(pose) || !(margin >= 0.0) {
-            return;
+            return true;
         }
         let (a, b) = (self.a, self.b);
         let relative = Relative::new(pose, a, b);
         let enough = margin * margin;
-        let _ = walk::<()>(a, b, &relative, margin, &mut self.stack, |s, t| {
+        let never_faces = |(i, j): (u32, u32)| match (a.caps().get(i as usize), b.caps().get(j as usize)) {
+            (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y, tilt),
+            _ => false,
+        };
+        let walked = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
+            if *work == 0 {
+                return ControlFlow::Break(());
+            }
+            *work -= 1;
             let on_s = relative.place_all(a.corners(s));
             if plane_gap_squared(&on_s, b.corners(t)) <= enough {
                 candidates((a, s, &on_s), (b, t, b.corners(t)), |x| {
                     if x.squared <= enough
-                        && let Some(contact) = local_minimum(a, b, &relative, &x)
+                        && let Some(contact) = local_minimum(a, b, &relative, &x, tilt, through)
                     {
                         out.push(contact);
                     }
@@ -65,10 +108,11 @@ impl Pair<'_> {
         });
         out.sort_unstable_by_key(|c| (c.feature_a, c.feature_b));
         out.dedup_by_key(|c| (c.feature_a, c.feature_b));
+        walked.is_continue()
     }
 }
 
-fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Option<Contact> {
+fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate, tilt: f64, through: bool) -> Option<Contact> {
     let gap = x.squared.sqrt();
     let touching = gap <= 8.0 * relative.doubt;
     let toward = if touching {
@@ -83,7 +127,7 @@ fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Opti
         (Feature::Edge(i), Feature::Edge(j)) => Some(relative.turn(&along(a, i)).cross(&along(b, j))),
         _ => None,
     };
-    let mut blur = CONE;
+    let mut blur = tilt;
     let direction = match fixed {
         Some(axis) if axis.dot(&toward) < 0.0 => -axis,
         Some(axis) => axis,
@@ -95,16 +139,22 @@ fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Opti
     };
     // Parallel edges have no direction of their own; their ends are contacts.
     let direction = direction.try_normalize(1e-9 * direction_scale(x, &toward))?;
-    let in_cones = in_normal_cone(a, x.feature_a, &relative.turn_back(&direction), blur)
-        && in_normal_cone(b, x.feature_b, &-direction, blur);
-    in_cones.then_some(Contact {
+    let in_cones = |direction: &Vector3<f64>| {
+        in_normal_cone(a, x.feature_a, &relative.turn_back(direction), blur)
+            && in_normal_cone(b, x.feature_b, &-direction, blur)
+    };
+    let contact = |normal: Vector3<f64>, gap: f64| Contact {
         feature_a: x.feature_a,
         feature_b: x.feature_b,
         on_a: x.on_a,
         on_b: x.on_b,
-        normal: -direction,
+        normal,
         gap,
-    })
+    };
+    if in_cones(&direction) {
+        return Some(contact(-direction, gap));
+    }
+    (through && fixed.is_some() && in_cones(&-direction)).then(|| contact(direction, -gap))
 }
 
 /// What the length of an unnormalised direction is compared with: unit vectors for fixed ones and touching pairs.
