@@ -16,7 +16,7 @@ static qdist_mesh *prism(const double (*polygon)[2], uint32_t corners, const uin
     double xyz[16][3];
     uint32_t triangles[32][3], count = 0, i, k, which = QDIST_MESH_NONE;
     qdist_mesh_report report;
-    qdist_mesh *mesh;
+    qdist_mesh *mesh, *certified;
     qdist_status status;
     for (i = 0; i < 2 * corners; ++i) {
         xyz[i][0] = polygon[i % corners][0];
@@ -43,7 +43,9 @@ static qdist_mesh *prism(const double (*polygon)[2], uint32_t corners, const uin
     report.struct_size = sizeof report;
     check(qdist_mesh_check(mesh, &report), "qdist_mesh_check");
     if (!report.clean) fprintf(stderr, "the mesh has defects, e.g. %u open edges\n", (unsigned)report.open_edges);
-    return mesh;
+    check(qdist_mesh_certify(mesh, &certified), "qdist_mesh_certify"); /* for lower bounds */
+    qdist_mesh_free(mesh);
+    return certified;
 }
 
 /* Gives up after many questions: a program would look at its clock, or draw a progress bar. */

@@ -333,6 +333,24 @@ static void depths(void) {
     CHECK(account.blocks == 0 && account.bytes == 0);
 }
 
+/* With convex pieces in both, the depth of boxes is known from both sides. */
+static void certified(void) {
+    qdist_mesh *a = box(0.5, 0.4, 0.3, 12), *b = box(1, 1.5, 2, 12), *open = box(1, 1, 1, 11), *ca = NULL, *cb = NULL;
+    qdist_mesh_pair *pair = NULL;
+    qdist_mesh_depth depth;
+    const qdist_mesh_pose pose = at(1.4, 0.2, -0.1);
+    CHECK(qdist_mesh_certify(NULL, &ca) == QDIST_ERROR_NULL && qdist_mesh_certify(a, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_certify(open, &ca) == QDIST_ERROR_MESH_NOT_SOLID && ca == NULL);
+    CHECK(qdist_mesh_certify(a, &ca) == QDIST_OK && qdist_mesh_certify(b, &cb) == QDIST_OK);
+    qdist_mesh_free(a), qdist_mesh_free(b), qdist_mesh_free(open);
+    CHECK(qdist_mesh_pair_create(ca, cb, &pair) == QDIST_OK);
+    depth.struct_size = sizeof depth;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, NULL, &depth) == QDIST_OK && depth.outcome == QDIST_MESH_CONVERGED);
+    CHECK(0.0999 <= depth.lower && depth.lower <= 0.1 + 1e-12 && 0.1 - 1e-12 <= depth.upper && depth.upper <= 0.1001);
+    qdist_mesh_free(ca), qdist_mesh_free(cb), qdist_mesh_pair_free(pair);
+    CHECK(account.blocks == 0 && account.bytes == 0);
+}
+
 static void names(void) {
     qdist_mesh_outcome outcome;
     qdist_status status;
@@ -350,6 +368,7 @@ int main(void) {
     reports();
     proximity();
     depths();
+    certified();
     names();
     CHECK(account.total > 0 && account.blocks == 0 && account.bytes == 0 && account.misfits == 0);
     return finish("mesh");

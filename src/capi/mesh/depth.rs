@@ -2,7 +2,7 @@
 //!
 //! How little must A move, rotations included, to be free of B? Local minima abound and no practical method finds the least of them with
 //! certainty, so the answer is a bracket: no free pose is nearer than `lower`, and `pose` is free, proved by the solid test, at the
-//! distance `upper`.
+//! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
 use super::super::generic::{aligned, array, finite, known_size, shared};
 use super::super::status::{

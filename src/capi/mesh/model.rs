@@ -11,6 +11,7 @@ use super::super::status::{
     QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_MESH_VERTEX, qdist_status,
 };
 use super::guard::guard;
+use crate::mesh::certificate::BuildOptions;
 use crate::mesh::mass::MassProperties;
 use crate::mesh::{MeshError, Model, ModelError};
 use std::sync::Arc;
@@ -130,6 +131,23 @@ fn from_model(error: ModelError) -> (qdist_status, Option<usize>) {
         // Points without a hull would have been refused above.
         ModelError::Disp(_) => (QDIST_ERROR_MESH_COLLINEAR, None),
     }
+}
+
+/// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
+/// need them. Without, `lower` is 0. Allocates; up to a second for 3,000 triangles. QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
+/// rounding cannot tell it, or a coordinate is above 1e50.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_certify(mesh: *const qdist_mesh, certified: *mut *mut qdist_mesh) -> qdist_status {
+    guard(|| {
+        aligned(certified)?;
+        // SAFETY: what the header asks of the caller.
+        let model = unsafe { Model::clone(&shared(mesh)?.model) };
+        let model = model.with_pieces(&BuildOptions::default()).map_err(|_| QDIST_ERROR_MESH_NOT_SOLID)?;
+        let made = Box::new(qdist_mesh { model: Arc::new(model) });
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { certified.write(Box::into_raw(made)) };
+        Ok(())
+    })
 }
 
 /// Frees a mesh; NULL is nothing. Pairs of it stay valid: they share what they need, and the last one frees it.
