@@ -1,8 +1,9 @@
 # The C side of qdist: libraries, header, C and C++ tests, proofs about the freestanding library. Rust alone needs only cargo.
 #
 #   make lib            freestanding static library (no std)       make demo          build and run the C examples
+#   make lib-mesh       hosted static library with meshes          make demo-mesh     build and run examples/mesh_depth.c
 #   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
-#   make header         src/capi/f32 and include/qdist.h           make freestanding  a program without any libc
+#   make header         src/capi/f32 and the headers of include/   make freestanding  a program without any libc
 #   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
 #   make stack          stack bytes of a query              
 #   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
@@ -21,13 +22,15 @@ CXXFLAGS_TEST = -std=c++17 -Wall -Wextra -Wpedantic -Werror -O1 -g -Iinclude
 target := $(or $(CARGO_TARGET_DIR),target)
 lib := $(target)/release/libqdist.a
 lib_std := $(target)/debug/libqdist.a
+lib_mesh := $(target)/hosted/libqdist.a
+system_libs := -lpthread -ldl -lm
 out := $(target)/c
 version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Runs apt-get as root when it may.
 apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
       else echo "please install: $(1)" >&2; exit 1; fi
 
-.PHONY: all lib lib-std header header-check demo test test-c freestanding purity stack compare bench-dq bench-grasp compiler clean
+.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp compiler clean
 all: lib
 
 compiler:
@@ -40,15 +43,19 @@ lib: compiler
 
 lib-std: compiler
 	@echo "building $(lib_std) (std, debug)"
-	@$(CARGO) rustc --quiet --locked --lib --features capi,grasp,std --crate-type staticlib
+	@$(CARGO) rustc --quiet --locked --lib --features capi,grasp,c-allocator --crate-type staticlib
+
+lib-mesh: compiler
+	@echo "building $(lib_mesh) (std, meshes, release)"
+	@$(CARGO) rustc --quiet --locked --lib --profile hosted --features capi,grasp,c-allocator --crate-type staticlib
 
 header:
-	@echo "writing src/capi/f32/ and include/qdist.h"
+	@echo "writing src/capi/f32/ and include/"
 	@scripts/f32.sh
 	@scripts/header.sh
 
 header-check:
-	@echo "checking that src/capi/f32/ and include/qdist.h are fresh"
+	@echo "checking that src/capi/f32/ and include/ are fresh"
 	@scripts/f32.sh --check
 	@scripts/header.sh --check
 
@@ -59,6 +66,11 @@ demo: lib
 	@echo "building and running examples/gripper.c"
 	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/gripper.c $(lib) -lm -o $(out)/gripper
 	@$(out)/gripper
+
+demo-mesh: lib-mesh
+	@echo "building and running examples/mesh_depth.c"
+	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/mesh_depth.c $(lib_mesh) $(system_libs) -o $(out)/mesh_depth
+	@$(out)/mesh_depth
 
 # $(call c-tests,directory,extra flags,library,command in front)
 define c-tests
@@ -71,14 +83,25 @@ define c-tests
 	@for test in smoke bad_arguments abi grasp smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
 endef
 
-test-c: lib lib-std
+# $(call mesh-tests,directory,extra flags,library)
+define mesh-tests
+	@mkdir -p $(out)/$(1)
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/mesh.c $(3) $(system_libs) -o $(out)/$(1)/mesh
+	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/mesh_cpp.cpp $(3) $(system_libs) -o $(out)/$(1)/mesh_cpp
+	@for test in mesh mesh_cpp; do $(out)/$(1)/$$test || exit 1; done
+endef
+
+test-c: lib lib-std lib-mesh
 	@echo "C and C++ tests with the freestanding library"
 	$(call c-tests,plain,,$(lib),)
+	@echo "C and C++ tests of meshes with the hosted library"
+	$(call mesh-tests,plain,,$(lib_mesh))
 	@echo "C and C++ tests with sanitizers and the hosted library"
 	$(call c-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std) -lpthread -ldl,)
+	$(call mesh-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std))
 	@if command -v valgrind >/dev/null; then \
 	    echo "C and C++ tests under valgrind"; \
-	    for test in smoke bad_arguments abi grasp smoke_cpp; do \
+	    for test in smoke bad_arguments abi grasp smoke_cpp mesh mesh_cpp; do \
 	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
 	    done; \
 	else echo "valgrind is not installed: its runs are skipped"; fi

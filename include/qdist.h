@@ -142,7 +142,8 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // The memory does not hold a solver.
 #define QDIST_ERROR_SOLVER 10
 
-// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0.
+// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0. Or the quaternion is not of unit length,
+// to 1e-6.
 #define QDIST_ERROR_ROTATION 11
 
 // A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
@@ -180,6 +181,27 @@ typedef int32_t (*qdist_interrupt)(void *user);
 
 // A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 #define QDIST_ERROR_TORQUE_LIMIT 23
+
+// A mesh has no triangles.
+#define QDIST_ERROR_MESH_EMPTY 24
+
+// A triangle of a mesh refers to a vertex that does not exist.
+#define QDIST_ERROR_MESH_INDEX 25
+
+// A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
+#define QDIST_ERROR_MESH_VERTEX 26
+
+// All vertices that a mesh's triangles use lie on one line.
+#define QDIST_ERROR_MESH_COLLINEAR 27
+
+// What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
+#define QDIST_ERROR_MESH_NOT_SOLID 28
+
+// The allocator is set already, or memory has been allocated without.
+#define QDIST_ERROR_ALLOCATOR 29
+
+// A defect of the library, which went no further. Please report it.
+#define QDIST_ERROR_INTERNAL 30
 
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Writes include/qdist.h and include/qdist_grasp.h. With --check: fails when that would change one of them.
+# Writes include/qdist.h, include/qdist_grasp.h and include/qdist_mesh.h. With --check: fails when that would change one of them.
 set -eu
 cd "$(dirname "$0")/.."
 version=0.29.4
 out=$(mktemp)
-trap 'rm -f "$out" "$out.grasp" "$out.toml" "$out.warnings"' EXIT
+trap 'rm -f "$out" "$out.grasp" "$out.mesh" "$out.toml" "$out.warnings"' EXIT
 
 if ! cbindgen --version 2>/dev/null | grep -qF "cbindgen $version"; then
     echo "installing cbindgen $version" >&2
@@ -25,7 +25,7 @@ chapter() {
         suffix == "" { text = text "\n *" ($0 == "" ? "" : " " $0) }
         END { print text " */\n" }'
     cbindgen --config "$1" "$2" 2>"$out.warnings" || { cat "$out.warnings" >&2; exit 1; }
-    grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skipping .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
+    grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skip(ping)? .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
 # A header: what it begins with, chapters without a scalar, and chapters for both.
@@ -41,6 +41,7 @@ header() {
 header src/capi/prelude.h "status version symmetry" "solver sets shapes points combine gauges query span warm" |
     cat -s >"$out"
 header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients" | cat -s >"$out.grasp"
+header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/depth" "" | cat -s >"$out.mesh"
 
 # $1: what was written, $2: the header.
 install() {
@@ -54,3 +55,4 @@ install() {
 check=${1:-}
 install "$out" include/qdist.h
 install "$out.grasp" include/qdist_grasp.h
+install "$out.mesh" include/qdist_mesh.h

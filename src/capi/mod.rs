@@ -3,6 +3,7 @@
 //! * [`status`], [`symmetry`], [`version`]: codes and their names, and callbacks without a scalar.
 //! * [`handle`]: a solver in the caller's memory.
 //! * `grasp` (feature): codes of the second header, `include/qdist_grasp.h`, whose structs and functions are in `f64::grasp`.
+//! * `mesh` (feature): the third header, `include/qdist_mesh.h`, of a library that needs `std`.
 //! * [`generic`]: what the entry points of both scalars share. Checked pointers, callbacks as a
 //!   [`Support`](crate::support::Support) and a [`Gauge`](crate::qset::Gauge), and loops over run-time dimensions.
 //! * [`f64`](mod@f64): the structs and functions with suffix `_f64`, written by hand, since the header generator does not
@@ -24,6 +25,8 @@ mod generic;
 #[cfg(feature = "grasp")]
 pub mod grasp;
 pub mod handle;
+#[cfg(feature = "mesh")]
+pub mod mesh;
 pub mod status;
 pub mod symmetry;
 pub mod version;

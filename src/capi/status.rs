@@ -37,7 +37,8 @@ pub const QDIST_ERROR_SCALAR: qdist_status = 8;
 pub const QDIST_ERROR_CAPACITY: qdist_status = 9;
 /// The memory does not hold a solver.
 pub const QDIST_ERROR_SOLVER: qdist_status = 10;
-/// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0.
+/// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0. Or the quaternion is not of unit length,
+/// to 1e-6.
 pub const QDIST_ERROR_ROTATION: qdist_status = 11;
 /// A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
 pub const QDIST_ERROR_CALLBACK: qdist_status = 12;
@@ -63,6 +64,20 @@ pub const QDIST_ERROR_FRAME: qdist_status = 21;
 pub const QDIST_ERROR_TOLERANCE: qdist_status = 22;
 /// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 pub const QDIST_ERROR_TORQUE_LIMIT: qdist_status = 23;
+/// A mesh has no triangles.
+pub const QDIST_ERROR_MESH_EMPTY: qdist_status = 24;
+/// A triangle of a mesh refers to a vertex that does not exist.
+pub const QDIST_ERROR_MESH_INDEX: qdist_status = 25;
+/// A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
+pub const QDIST_ERROR_MESH_VERTEX: qdist_status = 26;
+/// All vertices that a mesh's triangles use lie on one line.
+pub const QDIST_ERROR_MESH_COLLINEAR: qdist_status = 27;
+/// What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
+pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 28;
+/// The allocator is set already, or memory has been allocated without.
+pub const QDIST_ERROR_ALLOCATOR: qdist_status = 29;
+/// A defect of the library, which went no further. Please report it.
+pub const QDIST_ERROR_INTERNAL: qdist_status = 30;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -145,6 +160,13 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_FRAME => c"wrench frame out of range",
         QDIST_ERROR_TOLERANCE => c"rank tolerance out of range",
         QDIST_ERROR_TORQUE_LIMIT => c"torque limits out of range",
+        QDIST_ERROR_MESH_EMPTY => c"mesh without triangles",
+        QDIST_ERROR_MESH_INDEX => c"mesh triangle refers to no vertex",
+        QDIST_ERROR_MESH_VERTEX => c"mesh vertex not finite or too large",
+        QDIST_ERROR_MESH_COLLINEAR => c"mesh vertices lie on a line",
+        QDIST_ERROR_MESH_NOT_SOLID => c"mesh bounds no solid",
+        QDIST_ERROR_ALLOCATOR => c"allocator set or in use",
+        QDIST_ERROR_INTERNAL => c"defect of the library",
         _ => c"unknown status",
     }
     .as_ptr()

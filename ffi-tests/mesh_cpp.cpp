@@ -1,0 +1,23 @@
+// The header of meshes is C++, too; here with the system's allocator.
+#include "qdist_mesh.h"
+#include "test.h"
+
+int main() {
+    const double xyz[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const uint32_t triangles[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    const qdist_mesh_pose pose = {{1, 0, 0, 0}, {0, 0, 0.9}};
+    qdist_mesh *body = nullptr;
+    qdist_mesh_pair *pair = nullptr;
+    CHECK(qdist_mesh_create(xyz, 4, triangles, 4, nullptr, &body) == QDIST_OK);
+    CHECK(qdist_mesh_pair_create(body, body, &pair) == QDIST_OK);
+    // Memory has been allocated, so it is too late for another allocator.
+    static const qdist_allocator late = {[](void *, size_t, size_t) -> void * { return nullptr; }, [](void *, void *, size_t, size_t) {}, nullptr};
+    CHECK(qdist_mesh_set_allocator(&late) == QDIST_ERROR_ALLOCATOR);
+    qdist_mesh_depth depth{};
+    depth.struct_size = sizeof depth;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, nullptr, &depth) == QDIST_OK);
+    CHECK(depth.lower <= depth.upper && 0 < depth.upper && depth.upper <= 0.11);
+    qdist_mesh_pair_free(pair);
+    qdist_mesh_free(body);
+    return finish("mesh_cpp");
+}

@@ -1,0 +1,16 @@
+//! The C ABI of the mesh layer: `include/qdist_mesh.h`, generated from this module by `make header`.
+//!
+//! * [`model`]: meshes from arrays, what is wrong with them, and their mass.
+//! * [`pair`]: two of them: collision, distance, contacts.
+//! * [`depth`]: generalized penetration depth.
+//! * `allocator` (feature `c-allocator`): where the C library's memory comes from.
+//!
+//! Handles are boxes. A pair shares its meshes by reference counting, so that they may be freed in any order. Every call runs in
+//! [`guard`]: a panic, which would be a defect, becomes a status.
+
+#[cfg(feature = "c-allocator")]
+pub mod allocator;
+pub mod depth;
+mod guard;
+pub mod model;
+pub mod pair;
