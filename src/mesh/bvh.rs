@@ -126,6 +126,10 @@ impl Bvh {
         &self.nodes[i as usize]
     }
 
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
     pub fn root(&self) -> &Node {
         &self.nodes[0]
     }

@@ -23,6 +23,8 @@
 //! # Parts
 //!
 //! ```text
+//! depth                       generalized penetration depth: seeds, walks, bracket
+//!  model                      a body: a mesh with its metrics
 //! certificate                 how far A must move at the least: convex pieces inside both, and the core's depth
 //! metric                      how far a pose is from another: DISP, object norm
 //!  optimize                   the best small motion that contacts allow
@@ -30,6 +32,7 @@
 //! proximity                   two meshes: solid test, distance, contacts, motion along a screw
 //!  surface                    a mesh: vertices, triangles, and all that is derived from them once
 //!   check                     what is wrong with it, and whether it bounds a solid
+//!   cones                     a tree of cones of normals over the triangles
 //!   bvh                       a tree of boxes over the triangles
 //!    topology                 edges, neighbours, components, convexity
 //! ```
@@ -43,6 +46,7 @@
 mod bvh;
 pub mod certificate;
 pub mod check;
+mod cones;
 mod depth;
 pub mod hull;
 pub mod mass;

@@ -2,6 +2,7 @@
 
 use super::bvh::Bvh;
 use super::check::Report;
+use super::cones::{Cap, caps};
 use super::topology::Topology;
 use nalgebra::{Point3, Vector3};
 
@@ -55,6 +56,8 @@ pub struct Mesh {
     topology: Topology,
     report: Report,
     bvh: Bvh,
+    /// Of the nodes of the tree; none for a polygon soup.
+    caps: Vec<Cap>,
     scale: f64,
     /// Per vertex, the sum of the faces' unit normals, each times its angle there.
     vertex_normals: Vec<Vector3<f64>>,
@@ -90,6 +93,8 @@ impl Mesh {
         topology.set_owners(vertices.len(), triangles, report.solid);
         let corners: Vec<_> = triangles.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
         let bvh = Bvh::new(&corners);
+        let normals: Vec<_> = corners.iter().map(unit_normal).collect();
+        let caps = if report.solid { caps(&bvh, vertices.len(), triangles, &topology, &normals) } else { Vec::new() };
         let extremes = extremes(&vertices, triangles, &topology);
         let vertex_normals = vertex_normals(vertices.len(), triangles, &corners);
         let scale = corners.iter().flatten().fold(0.0f64, |m, p| m.max(p.coords.amax()));
@@ -100,6 +105,7 @@ impl Mesh {
             topology,
             report,
             bvh,
+            caps,
             scale,
             vertex_normals,
             extremes,
@@ -166,6 +172,11 @@ impl Mesh {
 
     pub(super) fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// The cones of normals of the tree's nodes; empty for a polygon soup, which is met from any side.
+    pub(super) fn caps(&self) -> &[Cap] {
+        &self.caps
     }
 
     pub(super) fn extremes(&self) -> &[[u32; 6]] {

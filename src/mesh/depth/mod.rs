@@ -34,9 +34,11 @@
 mod random;
 mod search;
 mod seeds;
+mod walk;
 
 use super::metric::Metric;
-use super::{Counters, Distance, Model, Pair};
+use super::optimize::{Constraint, StepMemory};
+use super::{Contact, Counters, Distance, Model, Pair};
 use nalgebra::Isometry3;
 use search::Search;
 
@@ -163,12 +165,21 @@ pub struct DepthSolver<'m> {
     a: &'m Model,
     b: &'m Model,
     pair: Pair<'m>,
+    scratch: Scratch,
+}
+
+/// Memory that walks reuse.
+#[derive(Clone, Debug)]
+struct Scratch {
+    contacts: Vec<Contact>,
+    constraints: Vec<Constraint>,
+    memory: StepMemory,
 }
 
 impl<'m> DepthSolver<'m> {
     /// A moves, B rests.
     pub fn new(a: &'m Model, b: &'m Model) -> DepthSolver<'m> {
-        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()) }
+        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()), scratch: Scratch { contacts: Vec::new(), constraints: Vec::new(), memory: StepMemory::new(walk::CONTACTS) } }
     }
 
     /// The body that moves.

@@ -1,14 +1,16 @@
 //! The state of one query: the best pose so far, the budget, and the order of things.
 
 use super::random::Random;
-use super::seeds::rays;
-use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Watch};
+use super::seeds::{pushout, rays};
+use super::walk::{Bounds, CONTACTS, walk};
+use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Watch};
 use crate::mesh::metric::Metric;
 use crate::mesh::{Counters, Pair, Screw};
 use nalgebra::Isometry3;
 
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
+    pub scratch: &'s mut Scratch,
     pub metric: &'s dyn Metric,
     pub options: &'s DepthOptions<'s>,
     watch: Option<Watch<'w>>,
@@ -44,6 +46,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         Search {
             size: solver.a.mesh().diagonal(),
             pair: &mut solver.pair,
+            scratch: &mut solver.scratch,
             metric,
             options,
             watch,
@@ -73,8 +76,17 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             self.offer_slid(pose);
         }
         rays::escape(&mut self);
+        let from = self.start;
+        if self.options.push_out
+            && let Some(seed) = pushout::push_out(&mut self, &from)
+        {
+            walk(&mut self, &seed, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+        }
         if self.options.rays {
-            rays::cast(&mut self);
+            let seeds = rays::cast(&mut self);
+            for seed in seeds {
+                walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+            }
         }
         let outcome = match self.stop {
             Some(outcome) => outcome,
@@ -123,6 +135,15 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             self.stop = Some(Outcome::Converged);
         }
         self.stop.is_none()
+    }
+
+    /// Keeps as many contacts as a step can take, the nearest.
+    pub fn limit_contacts(&mut self) {
+        let contacts = &mut self.scratch.contacts;
+        if contacts.len() > CONTACTS {
+            contacts.sort_by(|x, y| x.gap.abs().total_cmp(&y.gap.abs()));
+            contacts.truncate(CONTACTS);
+        }
     }
 
     pub fn distance(&self, pose: &Isometry3<f64>) -> f64 {

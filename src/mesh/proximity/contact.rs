@@ -10,7 +10,7 @@
 use super::super::{EdgeKind, Feature, Mesh};
 use super::Pair;
 use super::candidate::{Candidate, candidates};
-use super::relative::{Relative, is_usable, walk};
+use super::relative::{Relative, is_usable, walk_culled};
 use super::triangle::plane_gap_squared;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ pub struct Contact {
     pub on_b: Point3<f64>,
     /// Unit direction from B to A.
     pub normal: Vector3<f64>,
-    /// Distance of the points, at least 0.
+    /// Distance of the points, at least 0; negative where they have passed through each other ([`Pair::overlaps`]).
     pub gap: f64,
 }
 
@@ -42,6 +42,19 @@ impl Pair<'_> {
     ///
     /// Parallel faces and edges touch along an area; its corners are the contacts.
     pub fn contacts(&mut self, pose: &Isometry3<f64>, margin: f64, out: &mut Vec<Contact>) {
+        self.collect(pose, margin, false, out);
+    }
+
+    /// The same of two solids that overlap: contacts with a negative gap are features that have passed through each other by at most
+    /// `reach`, vertex-face, face-vertex and edge-edge. Their normals are those of the contacts that they were, so that to move
+    /// by minus the gap along the normal undoes them.
+    ///
+    /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
+    pub fn overlaps(&mut self, pose: &Isometry3<f64>, reach: f64, out: &mut Vec<Contact>) {
+        self.collect(pose, reach, self.a.is_solid() && self.b.is_solid(), out);
+    }
+
+    fn collect(&mut self, pose: &Isometry3<f64>, margin: f64, through: bool, out: &mut Vec<Contact>) {
         self.counters.contact += 1;
         out.clear();
         if !is_usable(pose) || !(margin >= 0.0) {
@@ -50,12 +63,16 @@ impl Pair<'_> {
         let (a, b) = (self.a, self.b);
         let relative = Relative::new(pose, a, b);
         let enough = margin * margin;
-        let _ = walk::<()>(a, b, &relative, margin, &mut self.stack, |s, t| {
+        let never_faces = |(i, j): (u32, u32)| match (a.caps().get(i as usize), b.caps().get(j as usize)) {
+            (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y),
+            _ => false,
+        };
+        let _ = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
             let on_s = relative.place_all(a.corners(s));
             if plane_gap_squared(&on_s, b.corners(t)) <= enough {
                 candidates((a, s, &on_s), (b, t, b.corners(t)), |x| {
                     if x.squared <= enough
-                        && let Some(contact) = local_minimum(a, b, &relative, &x)
+                        && let Some(contact) = local_minimum(a, b, &relative, &x, through)
                     {
                         out.push(contact);
                     }
@@ -68,7 +85,7 @@ impl Pair<'_> {
     }
 }
 
-fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Option<Contact> {
+fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate, through: bool) -> Option<Contact> {
     let gap = x.squared.sqrt();
     let touching = gap <= 8.0 * relative.doubt;
     let toward = if touching {
@@ -95,16 +112,22 @@ fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate) -> Opti
     };
     // Parallel edges have no direction of their own; their ends are contacts.
     let direction = direction.try_normalize(1e-9 * direction_scale(x, &toward))?;
-    let in_cones = in_normal_cone(a, x.feature_a, &relative.turn_back(&direction), blur)
-        && in_normal_cone(b, x.feature_b, &-direction, blur);
-    in_cones.then_some(Contact {
+    let in_cones = |direction: &Vector3<f64>| {
+        in_normal_cone(a, x.feature_a, &relative.turn_back(direction), blur)
+            && in_normal_cone(b, x.feature_b, &-direction, blur)
+    };
+    let contact = |normal: Vector3<f64>, gap: f64| Contact {
         feature_a: x.feature_a,
         feature_b: x.feature_b,
         on_a: x.on_a,
         on_b: x.on_b,
-        normal: -direction,
+        normal,
         gap,
-    })
+    };
+    if in_cones(&direction) {
+        return Some(contact(-direction, gap));
+    }
+    (through && fixed.is_some() && in_cones(&-direction)).then(|| contact(direction, -gap))
 }
 
 /// What the length of an unnormalised direction is compared with: unit vectors for fixed ones and touching pairs.

@@ -147,13 +147,26 @@ pub(super) fn walk<B>(
     relative: &Relative,
     margin: f64,
     stack: &mut Vec<(u32, u32)>,
+    visit: impl FnMut(u32, u32) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    walk_culled(a, b, relative, margin, stack, |_| false, visit)
+}
+
+/// The same without the pairs of boxes that `skip` knows to hold nothing.
+pub(super) fn walk_culled<B>(
+    a: &Mesh,
+    b: &Mesh,
+    relative: &Relative,
+    margin: f64,
+    stack: &mut Vec<(u32, u32)>,
+    skip: impl Fn((u32, u32)) -> bool,
     mut visit: impl FnMut(u32, u32) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
     stack.clear();
     stack.push((0, 0));
     while let Some(pair) = stack.pop() {
         let (node_a, node_b) = (a.bvh().node(pair.0), b.bvh().node(pair.1));
-        if relative.boxes_apart(node_a, node_b, margin) {
+        if skip(pair) || relative.boxes_apart(node_a, node_b, margin) {
             continue;
         }
         match open(a, b, pair) {

@@ -1,3 +1,4 @@
 //! Where walks begin.
 
+pub(super) mod pushout;
 pub(super) mod rays;

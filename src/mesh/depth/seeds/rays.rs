@@ -3,10 +3,13 @@
 //! A ray that is not free where it reaches the best value so far is given up after that one test.
 
 use super::super::search::Search;
+use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 /// Directions of translation.
-const DIRECTIONS: usize = 32;
+const TRANSLATIONS: usize = 32;
+/// Screws.
+const SCREWS: usize = 64;
 
 /// Moves A out of B's box, along the axis that is nearest. There is always such a pose, so there always is an upper bound, but for
 /// coordinates at the end of what numbers can do.
@@ -32,20 +35,76 @@ pub fn escape(search: &mut Search) {
     }
 }
 
-/// Translations into all directions.
-pub fn cast(search: &mut Search) {
+/// A free pose and its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Seed {
+    pub pose: Isometry3<f64>,
+    pub value: f64,
+}
+
+/// Translations into all directions, then random screws. Returns the best and diverse.
+pub fn cast(search: &mut Search) -> Vec<Seed> {
     let turn = search.random.rotation();
-    for k in 0..DIRECTIONS {
-        let direction = turn * on_sphere(k, DIRECTIONS);
-        if !(search.goes_on() && search.upper.is_finite()) {
-            return;
-        }
-        let far = moved(&search.start, &(direction * search.upper));
-        if !search.pair.collides(&far) {
-            let slid = search.slide(&far, 1e-4 * search.size);
-            search.take(&slid);
+    let mut found: Vec<Seed> = Vec::new();
+    for k in 0..TRANSLATIONS {
+        let direction = turn * on_sphere(k, TRANSLATIONS);
+        ray(search, &Motion { linear: direction, angular: Vector3::zeros() }, &mut found);
+    }
+    for _ in 0..SCREWS {
+        let (linear, angular) = (search.random.direction(), search.random.direction());
+        let share = search.random.signed().abs();
+        ray(search, &Motion { linear: linear * share, angular: angular * (1.0 - share) }, &mut found);
+    }
+    found.sort_by(|x, y| x.value.total_cmp(&y.value));
+    let mut chosen: Vec<Seed> = Vec::new();
+    for seed in found {
+        if chosen.len() < 4 && chosen.iter().all(|c| search.metric.distance(&c.pose, &seed.pose) > 0.3 * seed.value) {
+            chosen.push(seed);
         }
     }
+    chosen
+}
+
+/// A direction of motion: of the metric's centre, and a rotation vector times its radius.
+struct Motion {
+    linear: Vector3<f64>,
+    angular: Vector3<f64>,
+}
+
+const KEEP: f64 = 1.2;
+
+fn ray(search: &mut Search, motion: &Motion, found: &mut Vec<Seed>) {
+    if !search.goes_on() {
+        return;
+    }
+    let frame = search.metric.frame();
+    let radius = frame.radius;
+    let about = search.start * frame.centre;
+    let at = |s: f64| {
+        Twist { linear: motion.linear * s, angular: motion.angular * (s / radius), about }.applied(&search.start)
+    };
+    let most = KEEP * search.upper;
+    // The parameter where the metric is at its most.
+    let mut far = most;
+    for _ in 0..6 {
+        let value = search.distance(&at(far));
+        if !(value > 0.0) { return; }
+        if (value - most).abs() < 0.01 * most { break; }
+        far *= most / value;
+        if !(far * motion.angular.norm() < 3.0 * radius) { return; }
+    }
+    if search.pair.collides(&at(far)) {
+        return;
+    }
+    let (mut free, mut hit) = (far, 0.0);
+    while free - hit > 0.02 * free {
+        let middle = 0.5 * (free + hit);
+        if search.pair.collides(&at(middle)) { hit = middle } else { free = middle }
+    }
+    let pose = at(free);
+    let value = search.distance(&pose);
+    search.take(&pose);
+    found.push(Seed { pose, value });
 }
 
 fn moved(pose: &Isometry3<f64>, shift: &Vector3<f64>) -> Isometry3<f64> {
