@@ -126,9 +126,20 @@ mod tests {
     #[test]
     fn what_may_not() {
         for line in [
-            "", "a.obj", "a b c", "--queries", "--queries q a b", "--pose 1,0,0,0,0,0,0", "a b --pose 1,0,0,0,0,0",
-            "a b --pose 2,0,0,0,0,0,0", "a b --pose 1,0,0,0,0,nan,0", "--queries q --metric l2", "--queries q --effort",
-            "--queries q --seed -1", "--queries q --what", "--table1 a b",
+            "",
+            "a.obj",
+            "a b c",
+            "--queries",
+            "--queries q a b",
+            "--pose 1,0,0,0,0,0,0",
+            "a b --pose 1,0,0,0,0,0",
+            "a b --pose 2,0,0,0,0,0,0",
+            "a b --pose 1,0,0,0,0,nan,0",
+            "--queries q --metric l2",
+            "--queries q --effort",
+            "--queries q --seed -1",
+            "--queries q --what",
+            "--table1 a b",
         ] {
             assert!(parse(line).is_err(), "{line}");
         }

@@ -57,6 +57,8 @@ pub struct Query {
     pub a: PathBuf,
     pub b: PathBuf,
     pub pose: Isometry3<f64>,
+    /// The length of the best translation known.
+    pub translation: Option<f64>,
     disp: Known,
     sigma: Known,
 }
@@ -64,7 +66,7 @@ pub struct Query {
 impl Query {
     pub fn new(id: String, a: PathBuf, b: PathBuf, pose: Isometry3<f64>) -> Query {
         let nothing = Known::default();
-        Query { id, group: String::new(), a, b, pose, disp: nothing, sigma: nothing }
+        Query { id, group: String::new(), a, b, pose, translation: None, disp: nothing, sigma: nothing }
     }
 
     pub fn known(&self, kind: Kind) -> Known {
@@ -102,20 +104,24 @@ fn query(v: &Value, id: &str, folder: &Path) -> Result<Query, Trouble> {
     let squares = Some(["sigma_ub", "sigma_lb", "exact_sigma"]);
     let sigma = known(v, ["sqrt_sigma_ub", "sqrt_sigma_lb", "exact_sqrt_sigma"], squares)?;
     let group = v["group"].as_str().unwrap_or_default().to_string();
-    Ok(Query { group, disp, sigma, ..Query::new(id.to_string(), path("A")?, path("B")?, pose) })
+    let translation = number(v, "trans_only_ub")?;
+    Ok(Query { group, translation, disp, sigma, ..Query::new(id.to_string(), path("A")?, path("B")?, pose) })
+}
+
+fn number(v: &Value, key: &str) -> Result<Option<f64>, Trouble> {
+    match &v[key] {
+        Value::Null => Ok(None),
+        value => value.as_f64().map(Some).ok_or(format!("`{key}` is not a number")),
+    }
 }
 
 /// Best, lower and exact under the first names, or their squares under the others.
 fn known(v: &Value, names: [&str; 3], squares: Option<[&str; 3]>) -> Result<Known, Trouble> {
-    let number = |key: &str| match &v[key] {
-        Value::Null => Ok(None),
-        value => value.as_f64().map(Some).ok_or(format!("`{key}` is not a number")),
-    };
     let mut found = [None; 3];
     for k in 0..3 {
-        found[k] = number(names[k])?;
+        found[k] = number(v, names[k])?;
         if let (None, Some(squares)) = (found[k], squares) {
-            found[k] = number(squares[k])?.map(f64::sqrt);
+            found[k] = number(v, squares[k])?.map(f64::sqrt);
         }
     }
     Ok(Known { best: found[0], lower: found[1], exact: found[2] })

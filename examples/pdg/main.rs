@@ -50,7 +50,9 @@ fn run(request: &Request) -> Result<(), String> {
     let mut bodies = Bodies::of(&queries)?;
     if let Source::Pair(files, _) = &request.source {
         // Without a pose too: then this is all.
-        let both = files.iter().map(|file| Query::new(file.display().to_string(), file.clone(), file.clone(), Default::default()));
+        let both = files
+            .iter()
+            .map(|file| Query::new(file.display().to_string(), file.clone(), file.clone(), Default::default()));
         bodies = Bodies::of(&both.collect::<Vec<_>>())?;
     }
     for (file, model) in bodies.iter() {

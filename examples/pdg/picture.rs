@@ -1,7 +1,8 @@
 //! Pictures of a query: before, two free poses on the way, after (the paper's Figs. 6 to 8), from where A is best seen.
 //!
 //! Parallel projection, and what is farther is drawn first (painter's algorithm). Large triangles are cut into small ones before, so that order by
-//! centres is nearly order by depth, and bodies that overlap show where.
+//! centres is nearly order by depth, and bodies that overlap show where. Only what is visible in some pixel is drawn; and what B hides of A, on top,
+//! transparent.
 
 use std::error::Error;
 use std::path::Path;
@@ -20,7 +21,7 @@ const PANEL: (u32, u32) = (1000, 860);
 const CAPTION: f64 = 70.0;
 const MARGIN: f64 = 30.0;
 /// Largest edge of a drawn triangle, in units of the scene.
-const FINE: f64 = 0.03;
+const FINE: f64 = 0.045;
 /// Poses on the way are at most this much farther than the last.
 const FAR: f64 = 4.0;
 
@@ -51,16 +52,28 @@ pub fn draw(
     let safe: String =
         query.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let file = folder.join(format!("{safe}_{}.svg", row.kind.name()));
-    let rows = panels.len().div_ceil(2) as u32;
-    let root = SVGBackend::new(&file, (2 * PANEL.0, rows * PANEL.1)).into_drawing_area();
+    let (columns, rows) = if panels.len() < 4 { (panels.len(), 1) } else { (2, 2) };
+    let root = SVGBackend::new(&file, (columns as u32 * PANEL.0, rows as u32 * PANEL.1)).into_drawing_area();
     root.fill(&WHITE)?;
-    for ((pose, color, words), area) in panels.iter().zip(root.split_evenly((rows as usize, 2))) {
+    for ((pose, color, words), area) in panels.iter().zip(root.split_evenly((rows, columns))) {
         let mut facets = Vec::new();
         collect(b, &Isometry3::identity(), still.size * FINE, REST, &view, &mut facets);
+        let of_b = facets.len();
         collect(a, pose, still.size * FINE, *color, &view, &mut facets);
-        facets.sort_by(|x, y| x.depth.total_cmp(&y.depth));
-        for facet in &facets {
-            area.draw(&Polygon::new(view.corners(&facet.corners), facet.color.filled()))?;
+        let mut owners = view.owners(&facets, 1.0);
+        owners.sort_unstable();
+        owners.dedup();
+        let mut seen: Vec<&Facet> = owners.iter().map(|&i| &facets[i]).collect();
+        seen.sort_by(|x, y| x.depth.total_cmp(&y.depth));
+        for facet in seen {
+            let corners = facet.corners.map(|p| view.pixel(&p)).to_vec();
+            area.draw(&Polygon::new(corners.clone(), facet.color.filled()))?;
+            // Its border, so that no gap is seen between neighbours.
+            area.draw(&PathElement::new([&corners[..], &corners[..1]].concat(), facet.color.stroke_width(1)))?;
+        }
+        for i in (of_b..facets.len()).filter(|i| owners.binary_search(i).is_err()) {
+            let corners = facets[i].corners.map(|p| view.pixel(&p)).to_vec();
+            area.draw(&Polygon::new(corners, facets[i].color.mix(0.4).filled()))?;
         }
         let title = format!("{} {}: {words}", query.id, row.kind.name());
         area.draw(&Text::new(title, (MARGIN as i32, MARGIN as i32 / 2), ("sans-serif", 34).into_font().color(&BLACK)))?;
@@ -154,7 +167,8 @@ impl Scene {
     /// Of some directions the one where most of A is seen, at all these poses.
     fn best_view(&self, a: &Mesh, b: &Mesh, poses: &[Isometry3<f64>]) -> View {
         const DIRECTIONS: usize = 40;
-        const GRID: f64 = 32.0;
+        /// Pixels.
+        const CELL: f64 = 12.0;
         let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
         let views = (0..DIRECTIONS).map(|k| {
             let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
@@ -167,16 +181,7 @@ impl Scene {
                 collect(b, &Isometry3::identity(), self.size * FINE, REST, view, &mut facets);
                 let of_b = facets.len();
                 collect(a, pose, self.size * FINE, REST, view, &mut facets);
-                // The nearest facet of every cell.
-                let mut cells = std::collections::HashMap::new();
-                for (i, facet) in facets.iter().enumerate() {
-                    let at = view.see(&facet.corners[0]) * (GRID / f64::from(PANEL.0));
-                    let cell = cells.entry((at.x as i32, at.y as i32)).or_insert((f64::MIN, 0));
-                    if facet.depth > cell.0 {
-                        *cell = (facet.depth, i);
-                    }
-                }
-                cells.values().filter(|(_, i)| *i >= of_b).count()
+                view.owners(&facets, CELL).iter().filter(|&&i| i >= of_b).count()
             };
             poses.iter().map(seen).sum()
         };
@@ -208,10 +213,8 @@ impl View {
         let (width, height) = (f64::from(PANEL.0), f64::from(PANEL.1) - CAPTION);
         let fit = |room: f64, (low, high): (f64, f64)| (room - 2.0 * MARGIN) / (high - low).max(f64::MIN_POSITIVE);
         let scale = fit(width, x).min(fit(height, y));
-        let shift = Point2::new(
-            0.5 * width - 0.5 * scale * (x.0 + x.1),
-            CAPTION + 0.5 * height + 0.5 * scale * (y.0 + y.1),
-        );
+        let shift =
+            Point2::new(0.5 * width - 0.5 * scale * (x.0 + x.1), CAPTION + 0.5 * height + 0.5 * scale * (y.0 + y.1));
         View { right, up, near, scale, shift }
     }
 
@@ -220,11 +223,38 @@ impl View {
         Point2::new(self.shift.x + self.scale * x, self.shift.y - self.scale * y)
     }
 
-    /// A triangle's pixels; a little larger than it is, so that no gap is seen between neighbours.
-    fn corners(&self, corners: &[Point3<f64>; 3]) -> Vec<(i32, i32)> {
-        let [p, q, r] = corners.map(|p| self.see(&p));
-        let middle = Point2::from((p.coords + q.coords + r.coords) / 3.0);
-        let grown = |p: Point2<f64>| p + (p - middle).try_normalize(0.0).unwrap_or_default() * 0.9;
-        [p, q, r].map(|p| (grown(p).x.round() as i32, grown(p).y.round() as i32)).to_vec()
+    fn pixel(&self, p: &Point3<f64>) -> (i32, i32) {
+        let p = self.see(p);
+        (p.x.round() as i32, p.y.round() as i32)
+    }
+
+    /// The nearest facet in every cell of a grid that has one (a z-buffer); the cells are squares of so many pixels.
+    fn owners(&self, facets: &[Facet], cell: f64) -> Vec<usize> {
+        let (width, height) =
+            ((f64::from(PANEL.0) / cell).ceil() as usize, (f64::from(PANEL.1) / cell).ceil() as usize);
+        let mut nearest = vec![(f64::MIN, usize::MAX); width * height];
+        for (i, facet) in facets.iter().enumerate() {
+            let [p, q, r] = facet.corners.map(|p| self.see(&p) / cell);
+            let cross = |a: Point2<f64>, b: Point2<f64>, c: Point2<f64>| (b - a).perp(&(c - a));
+            let area = cross(p, q, r);
+            let range = |k: usize, most: usize| {
+                let (low, high) = (p[k].min(q[k]).min(r[k]), p[k].max(q[k]).max(r[k]));
+                // Centres of cells are at one half.
+                (low - 0.5).ceil().max(0.0) as usize..((high + 0.5).floor().max(0.0) as usize).min(most)
+            };
+            let depth = facet.corners.map(|p| p.coords.dot(&self.near));
+            for y in range(1, height) {
+                for x in range(0, width) {
+                    let at = Point2::new(x as f64 + 0.5, y as f64 + 0.5);
+                    let weights = [cross(q, r, at) / area, cross(r, p, at) / area, cross(p, q, at) / area];
+                    let here: f64 = weights.iter().zip(depth).map(|(w, z)| w * z).sum();
+                    let cell = &mut nearest[y * width + x];
+                    if weights.iter().all(|&w| w >= 0.0) && here > cell.0 {
+                        *cell = (here, i);
+                    }
+                }
+            }
+        }
+        nearest.into_iter().map(|(_, i)| i).filter(|&i| i != usize::MAX).collect()
     }
 }

@@ -95,8 +95,7 @@ pub fn stl(bytes: Vec<u8>) -> Result<Triangles, Trouble> {
 }
 
 pub fn ply(bytes: &[u8]) -> Result<Triangles, Trouble> {
-    let file =
-        Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("PLY: {e}"))?;
+    let file = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(bytes)).map_err(|e| format!("PLY: {e}"))?;
     let elements = |name: &str| file.payload.iter().find(|(key, _)| *key == name).map(|(_, list)| list.as_slice());
     let mut mesh = Triangles::default();
     for (i, vertex) in elements("vertex").ok_or("PLY: there is no element `vertex`")?.iter().enumerate() {
@@ -110,7 +109,8 @@ pub fn ply(bytes: &[u8]) -> Result<Triangles, Trouble> {
         let corners = face.get("vertex_indices").or(face.get("vertex_index"));
         let corners = corners.and_then(indices).ok_or(format!("PLY: face {i} has no list `vertex_indices`"))?;
         let negative = || format!("PLY: face {i} has an index that is negative or too large");
-        let corners: Vec<u32> = corners.into_iter().map(u32::try_from).collect::<Result<_, _>>().map_err(|_| negative())?;
+        let corners: Vec<u32> =
+            corners.into_iter().map(u32::try_from).collect::<Result<_, _>>().map_err(|_| negative())?;
         mesh.push_polygon(&corners);
     }
     Ok(mesh)

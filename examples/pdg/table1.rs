@@ -55,8 +55,8 @@ pub fn select(queries: Vec<Query>) -> Result<Vec<Query>, String> {
 pub fn write(out: &mut impl Write, queries: &[Query], bodies: &Bodies, rows: &[Row]) -> io::Result<()> {
     writeln!(
         out,
-        "{:8} {:>20} {:>8} {:>7} {:>8} {:>8} {:>10} {:>12} {:>8} {:>10}",
-        "", "A / B", "tri's", "ours", "metric", "queries", "paper ms", "ours ms", "ratio", "within 1%"
+        "{:8} {:>20} {:>8} {:>7} {:>8} {:>8} {:>10} {:>12} {:>11} {:>10}",
+        "", "A / B", "tri's", "ours", "metric", "queries", "paper ms", "ours ms", "paper/ours", "within 1%"
     )?;
     for (i, column) in COLUMNS.iter().enumerate() {
         let of: Vec<&Query> = queries.iter().filter(|q| column.has(q)).collect();
@@ -75,7 +75,7 @@ pub fn write(out: &mut impl Write, queries: &[Query], bodies: &Bodies, rows: &[R
             let (theirs, ours, metric, count) = (column.triangles[k], ours[k], kind.name(), rows.len());
             writeln!(
                 out,
-                "{number:<8} {name:>20} {theirs:>8} {ours:>7} {metric:>8} {count:>8} {paper:>10.0} {ms:>12.3} {:>8.1} {near:>10}",
+                "{number:<8} {name:>20} {theirs:>8} {ours:>7} {metric:>8} {count:>8} {paper:>10.0} {ms:>12.3} {:>11.1} {near:>10}",
                 paper / ms
             )?;
         }
