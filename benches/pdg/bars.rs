@@ -65,7 +65,7 @@ fn ratio(compared: &[Compared], groups: &[&str], contact: bool, distance: bool, 
 /// sqrt(sigma) <= DISP <= the best translation, query by query.
 fn order(cold: &[&Cold]) -> Bar {
     let holds = |c: &Cold| match c.row.kind {
-        Kind::Disp => c.translation.is_none_or(|t| c.row.upper <= t * (1.0 + 1e-6)),
+        Kind::Disp => c.row.translation.is_none_or(|t| c.row.upper <= t * (1.0 + 1e-6)),
         Kind::Sigma => {
             let disp = cold.iter().find(|d| d.row.kind == Kind::Disp && d.row.query == c.row.query);
             disp.is_none_or(|d| c.row.upper <= d.row.upper * (1.0 + 1e-9))

@@ -34,7 +34,6 @@ pub struct Cold {
     pub row: Row,
     /// Nanoseconds.
     pub times: Vec<f64>,
-    pub translation: Option<f64>,
     /// Whether a pair that knows nothing of the search finds the pose free.
     pub free: bool,
 }
@@ -65,7 +64,7 @@ pub fn cold(scenes: &Scenes, repetitions: usize, enough: Duration) -> Vec<Cold> 
                     times.push(row.ns as f64);
                 }
                 let free = row.upper.is_finite() && !Pair::new(a.mesh(), b.mesh()).collides(&row.pose);
-                all.push(Cold { variant: variant.name, row, times, translation: query.translation, free });
+                all.push(Cold { variant: variant.name, row, times, free });
             }
         }
     }

@@ -24,6 +24,8 @@ pub struct Row {
     pub counters: Counters,
     pub ns: u64,
     pub known: Known,
+    /// The length of the best translation known: an upper bound for both metrics.
+    pub translation: Option<f64>,
 }
 
 /// Asks. A polygon soup's object norm is the outcome `no_volume`, with nothing known.
@@ -39,6 +41,7 @@ pub fn ask(solver: &mut DepthSolver, query: &Query, kind: Kind, options: &DepthO
         counters: Counters::default(),
         ns: 0,
         known: query.known(kind),
+        translation: query.translation,
     };
     if let Some(metric) = bodies::metric(solver.a(), kind) {
         let begin = Instant::now();
