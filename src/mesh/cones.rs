@@ -60,17 +60,24 @@ impl Cap {
     }
 
     /// Whether no direction in this cap is opposite to one in the other; `axis` is this cap's axis in the other's frame.
+    /// Angles may be `tilt` larger.
     #[inline]
-    pub fn never_faces(&self, axis: &Vector3<f64>, other: &Cap) -> bool {
+    pub fn never_faces(&self, axis: &Vector3<f64>, other: &Cap, tilt: f64) -> bool {
         // The sum of two angles below a right one is below pi, where the cosine falls.
         !self.is_all()
             && !other.is_all()
-            && -axis.dot(&other.axis) < self.cosine * other.cosine - self.sine * other.sine
+            && -axis.dot(&other.axis) < self.cosine * other.cosine - self.sine * other.sine - tilt
     }
 }
 
 /// The cap of every node, in the order of the tree.
-pub(super) fn caps(bvh: &Bvh, vertices: usize, triangles: &[[u32; 3]], topology: &Topology, normals: &[Vector3<f64>]) -> Vec<Cap> {
+pub(super) fn caps(
+    bvh: &Bvh,
+    vertices: usize,
+    triangles: &[[u32; 3]],
+    topology: &Topology,
+    normals: &[Vector3<f64>],
+) -> Vec<Cap> {
     let mut irregular = vec![false; vertices];
     for edge in topology.edges().iter().filter(|e| matches!(e.kind, EdgeKind::Irregular | EdgeKind::Open)) {
         edge.vertices.iter().for_each(|&v| irregular[v as usize] = true);

@@ -13,6 +13,7 @@
 //! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, near stored contact
 //!   configurations, or given by the caller.
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
+//! * `contact_space` knows what a contact says of motions near by, and `sampling` is the walk's other kind of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
@@ -31,7 +32,9 @@
 //! # Ok::<(), qdist::mesh::ModelError>(())
 //! ```
 
+mod contact_space;
 mod random;
+mod sampling;
 mod search;
 mod seeds;
 mod walk;
@@ -39,6 +42,7 @@ mod walk;
 use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};
+use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
 
@@ -172,6 +176,7 @@ pub struct DepthSolver<'m> {
 #[derive(Clone, Debug)]
 struct Scratch {
     contacts: Vec<Contact>,
+    primitives: Vec<Primitive>,
     constraints: Vec<Constraint>,
     memory: StepMemory,
 }
@@ -179,7 +184,17 @@ struct Scratch {
 impl<'m> DepthSolver<'m> {
     /// A moves, B rests.
     pub fn new(a: &'m Model, b: &'m Model) -> DepthSolver<'m> {
-        DepthSolver { a, b, pair: Pair::new(a.mesh(), b.mesh()), scratch: Scratch { contacts: Vec::new(), constraints: Vec::new(), memory: StepMemory::new(walk::CONTACTS) } }
+        DepthSolver {
+            a,
+            b,
+            pair: Pair::new(a.mesh(), b.mesh()),
+            scratch: Scratch {
+                contacts: Vec::new(),
+                primitives: Vec::new(),
+                constraints: Vec::new(),
+                memory: StepMemory::new(walk::CONTACTS),
+            },
+        }
     }
 
     /// The body that moves.

@@ -27,6 +27,11 @@ impl Random {
         f64::from(self.bits()) / f64::from(1u32 << 31) - 1.0
     }
 
+    /// A number below n, at least 1.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.bits() as usize % n
+    }
+
     /// A uniform direction.
     pub fn direction(&mut self) -> Vector3<f64> {
         loop {

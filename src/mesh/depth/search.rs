@@ -3,8 +3,8 @@
 use super::random::Random;
 use super::seeds::{pushout, rays};
 use super::walk::{Bounds, CONTACTS, walk};
-use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Watch};
-use crate::mesh::metric::Metric;
+use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
+use crate::mesh::metric::{Metric, Sigma};
 use crate::mesh::{Counters, Pair, Screw};
 use nalgebra::Isometry3;
 
@@ -12,6 +12,8 @@ pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
     pub scratch: &'s mut Scratch,
     pub metric: &'s dyn Metric,
+    /// A's object norm, if it has one.
+    pub sigma: Option<&'m Sigma>,
     pub options: &'s DepthOptions<'s>,
     watch: Option<Watch<'w>>,
     /// The query's pose.
@@ -28,6 +30,24 @@ pub(super) struct Search<'s, 'm, 'w> {
     fraction: f64,
     stop: Option<Outcome>,
     before: Counters,
+}
+
+/// What an effort means.
+struct Plan {
+    rays: rays::Plan,
+    /// A walk's least gain.
+    gain: f64,
+    /// A walk is given up when it will not come below this multiple of the best.
+    hope: f64,
+}
+
+fn plan(effort: Effort) -> Plan {
+    let rays = |translations, screws, worse, seeds| rays::Plan { translations, screws, worse, seeds };
+    match effort {
+        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), gain: 1e-3, hope: 1.0 },
+        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), gain: 1e-4, hope: 1.0 },
+        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), gain: 1e-5, hope: 1.2 },
+    }
 }
 
 fn total(c: &Counters) -> u64 {
@@ -48,6 +68,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             pair: &mut solver.pair,
             scratch: &mut solver.scratch,
             metric,
+            sigma: solver.a.sigma(),
             options,
             watch,
             start: *pose,
@@ -72,22 +93,27 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let distance = self.pair.distance(&self.start);
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
+        let plan = plan(self.options.effort);
+        let escape = rays::escape(&mut self);
         for pose in self.options.poses {
-            self.offer_slid(pose);
+            self.walk_from(pose, &plan);
         }
-        rays::escape(&mut self);
-        let from = self.start;
         if self.options.push_out
-            && let Some(seed) = pushout::push_out(&mut self, &from)
+            && let Some(seed) = pushout::push_out(&mut self)
         {
-            walk(&mut self, &seed, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+            walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
-        if self.options.rays {
-            let seeds = rays::cast(&mut self);
-            for seed in seeds {
-                walk(&mut self, &seed.pose, &Bounds { gain: 1e-4, hopeless: f64::INFINITY });
+        if self.options.rays
+            && let Some(escape) = escape
+        {
+            let seeds = rays::cast(&mut self, &plan.rays, &escape);
+            for (k, seed) in seeds.iter().enumerate() {
+                self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
+                let hopeless = self.upper * plan.hope;
+                walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
             }
         }
+        self.polish();
         let outcome = match self.stop {
             Some(outcome) => outcome,
             None if self.upper == f64::INFINITY => Outcome::Stuck,
@@ -159,10 +185,22 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Takes a pose if it is free, after it has slid towards the start.
-    fn offer_slid(&mut self, pose: &Isometry3<f64>) {
-        if usable(pose) && self.goes_on() && !self.pair.collides(pose) {
-            let slid = self.slide(pose, 1e-6 * self.size);
+    /// Walks from the caller's pose, or from where pushing out from there leads.
+    fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
+        if !usable(pose) || !self.goes_on() {
+            return;
+        }
+        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose) } else { Some(*pose) };
+        if let Some(seed) = seed {
+            walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+        }
+    }
+
+    /// Brings the best pose to where it touches.
+    fn polish(&mut self) {
+        if self.upper.is_finite() {
+            let pose = self.pose;
+            let slid = self.slide(&pose, 1e-6 * self.size);
             self.take(&slid);
         }
     }

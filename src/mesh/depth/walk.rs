@@ -9,18 +9,25 @@
 //! leaves out, so it shrinks with the trust region too: both vanish as the walk converges. In the end A slides along the screw
 //! to the start until it touches.
 
+use super::contact_space::Primitive;
+use super::sampling::sampled_step;
 use super::search::Search;
-use crate::mesh::optimize::{Constraint, StepOptions};
+use super::{Scratch, Walk};
+use crate::mesh::optimize::{Constraint, StepOptions, Twist};
 use nalgebra::Isometry3;
 
 /// The first trust region, in diagonals of A.
 const TRUST: f64 = 0.05;
-/// The margin within which contacts are seen, in trust regions.
-const MARGIN: f64 = 0.1;
-/// The gap that remains, in margins.
-const CLEARANCE: f64 = 0.01;
+/// The margin within which contacts are seen, in diagonals of A.
+const MARGIN: f64 = 0.005;
+/// The gap that remains, in trust regions.
+const CLEARANCE: f64 = 3e-3;
 /// A walk has converged when its trust region is this small, in diagonals of A.
 const LEAST: f64 = 2e-5;
+/// Contacts are looked for that arise when A turns by this much.
+const MOST_TILT: f64 = 0.1;
+/// Second-order corrections of a step at most.
+const CORRECTIONS: usize = 2;
 /// Iterations at most.
 const ITERATIONS: usize = 30;
 /// Contacts that a step can take; of more, the nearest.
@@ -38,17 +45,19 @@ pub struct Bounds {
 /// Walks from a free pose; offers every improvement of the best. Returns where it ends, a free pose.
 pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
     search.walks += 1;
-    let mut pose = *from;
+    let margin = MARGIN * search.size;
+    let mut pose = search.slide(from, 0.2 * margin);
     let mut value = search.distance(&pose);
-    let mut trust = TRUST * search.size;
+    let most = TRUST * search.size;
+    let mut trust = most;
     let mut poor = 0;
     for iteration in 0..ITERATIONS {
         if !search.goes_on() {
             break;
         }
-        let margin = MARGIN * trust;
-        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin) else {
-            trust *= 0.25;
+        let clearance = (CLEARANCE * trust).min(0.1 * margin);
+        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin, clearance) else {
+            trust *= 0.1;
             if trust < LEAST * search.size {
                 break;
             }
@@ -58,7 +67,7 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
         let gain = 1.0 - next_value / value;
         pose = next;
         value = next_value;
-        trust = if fraction < 1.0 { (2.0 * fraction * trust).min(0.5 * trust) } else { trust.min(4.0 * length) };
+        trust = if fraction < 1.0 { fraction * length } else { (2.0 * trust).min(4.0 * length).min(most) };
         if trust < LEAST * search.size {
             break;
         }
@@ -71,9 +80,8 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
             break;
         }
     }
-    let slid = search.slide(&pose, 1e-6 * search.size);
-    search.take(&slid);
-    slid
+    search.take(&pose);
+    pose
 }
 
 /// One step: the next pose, the length of the full step, and the fraction of it that was free.
@@ -83,27 +91,59 @@ fn step(
     value: f64,
     trust: f64,
     margin: f64,
+    clearance: f64,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
-    search.pair.contacts(pose, margin, &mut search.scratch.contacts);
-    search.limit_contacts();
-    let scratch = &mut *search.scratch;
-    scratch.constraints.clear();
-    scratch.constraints.extend(scratch.contacts.iter().map(|c| Constraint {
-        point: c.on_a,
-        normal: c.normal,
-        gap: c.gap - CLEARANCE * margin,
-    }));
-    let options = StepOptions { trust, tolerance: 1e-3 };
-    let found =
-        search.metric.step(&search.start, pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
-    let length = found.twist.linear.norm().max(found.twist.angular.norm() * search.metric.frame().radius);
+    let found = match search.options.walk {
+        Walk::Linearised => linear_step(search, pose, trust, margin, clearance)?,
+        Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
+    };
+    let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
     let mut fraction = 1.0;
-    for _ in 0..8 {
-        let next = found.twist.scaled(fraction).applied(pose);
+    for _ in 0..6 {
+        let next = found.scaled(fraction).applied(pose);
         if search.distance(&next) < value && !search.pair.collides(&next) {
             return Some((next, length, fraction));
         }
         fraction *= 0.5;
     }
     None
+}
+
+/// Looks for contacts at a pose, with those that a step may bring about.
+pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) {
+    let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
+    search.pair.contacts_when_tilted(pose, margin, tilt, &mut search.scratch.contacts);
+    search.limit_contacts();
+    let (a, b) = (search.pair.a(), search.pair.b());
+    let Scratch { contacts, primitives, .. } = &mut *search.scratch;
+    primitives.clear();
+    primitives.extend(contacts.iter().map(|c| Primitive::new(c, a, b, pose)));
+}
+
+/// The best motion under the contacts. What the linearisation leaves out is looked up in the primitive constraints themselves, and
+/// the program is solved again with that much less room (a second-order correction).
+fn linear_step(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64, clearance: f64) -> Option<Twist> {
+    see(search, pose, trust, margin);
+    let Scratch { contacts, primitives, constraints, memory } = &mut *search.scratch;
+    constraints.clear();
+    constraints.extend(contacts.iter().map(|c| Constraint { point: c.on_a, normal: c.normal, gap: c.gap - clearance }));
+    let options = StepOptions { trust, tolerance: 1e-3 };
+    let back = pose.inverse();
+    let mut twist = search.metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
+    for _ in 0..CORRECTIONS {
+        let motion = twist.applied(pose) * back;
+        let mut held = true;
+        for (primitive, constraint) in primitives.iter().zip(constraints.iter_mut()) {
+            let gap = primitive.gap(&motion);
+            if gap < 0.5 * clearance {
+                constraint.gap -= clearance - gap;
+                held = false;
+            }
+        }
+        if held {
+            break;
+        }
+        twist = search.metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
+    }
+    Some(twist)
 }

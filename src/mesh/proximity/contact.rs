@@ -42,37 +42,64 @@ impl Pair<'_> {
     ///
     /// Parallel faces and edges touch along an area; its corners are the contacts.
     pub fn contacts(&mut self, pose: &Isometry3<f64>, margin: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, margin, false, out);
+        self.collect(pose, margin, CONE, false, usize::MAX, out);
+    }
+
+    /// The same with those that become local minima when A turns by up to an angle of this sine.
+    pub fn contacts_when_tilted(&mut self, pose: &Isometry3<f64>, margin: f64, tilt: f64, out: &mut Vec<Contact>) {
+        self.collect(pose, margin, tilt.max(CONE), false, usize::MAX, out);
     }
 
     /// The same of two solids that overlap: contacts with a negative gap are features that have passed through each other by at most
     /// `reach`, vertex-face, face-vertex and edge-edge. Their normals are those of the contacts that they were, so that to move
     /// by minus the gap along the normal undoes them.
     ///
+    /// Gives up after `work` pairs of triangles, and returns whether it did not.
+    ///
     /// Depth is only local: a vertex beyond a thin wall counts as one that has passed through its far side.
-    pub fn overlaps(&mut self, pose: &Isometry3<f64>, reach: f64, out: &mut Vec<Contact>) {
-        self.collect(pose, reach, self.a.is_solid() && self.b.is_solid(), out);
+    pub fn overlaps(
+        &mut self,
+        pose: &Isometry3<f64>,
+        reach: f64,
+        tilt: f64,
+        work: usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
+        self.collect(pose, reach, tilt.max(CONE), self.a.is_solid() && self.b.is_solid(), work, out)
     }
 
-    fn collect(&mut self, pose: &Isometry3<f64>, margin: f64, through: bool, out: &mut Vec<Contact>) {
+    fn collect(
+        &mut self,
+        pose: &Isometry3<f64>,
+        margin: f64,
+        tilt: f64,
+        through: bool,
+        work: usize,
+        out: &mut Vec<Contact>,
+    ) -> bool {
         self.counters.contact += 1;
         out.clear();
         if !is_usable(pose) || !(margin >= 0.0) {
-            return;
+            return true;
         }
         let (a, b) = (self.a, self.b);
         let relative = Relative::new(pose, a, b);
         let enough = margin * margin;
         let never_faces = |(i, j): (u32, u32)| match (a.caps().get(i as usize), b.caps().get(j as usize)) {
-            (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y),
+            (Some(x), Some(y)) => x.never_faces(&relative.turn(&x.axis), y, tilt),
             _ => false,
         };
-        let _ = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
+        let mut work = work;
+        let walked = walk_culled::<()>(a, b, &relative, margin, &mut self.stack, never_faces, |s, t| {
+            work -= 1;
+            if work == 0 {
+                return ControlFlow::Break(());
+            }
             let on_s = relative.place_all(a.corners(s));
             if plane_gap_squared(&on_s, b.corners(t)) <= enough {
                 candidates((a, s, &on_s), (b, t, b.corners(t)), |x| {
                     if x.squared <= enough
-                        && let Some(contact) = local_minimum(a, b, &relative, &x, through)
+                        && let Some(contact) = local_minimum(a, b, &relative, &x, tilt, through)
                     {
                         out.push(contact);
                     }
@@ -82,10 +109,11 @@ impl Pair<'_> {
         });
         out.sort_unstable_by_key(|c| (c.feature_a, c.feature_b));
         out.dedup_by_key(|c| (c.feature_a, c.feature_b));
+        walked.is_continue()
     }
 }
 
-fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate, through: bool) -> Option<Contact> {
+fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate, tilt: f64, through: bool) -> Option<Contact> {
     let gap = x.squared.sqrt();
     let touching = gap <= 8.0 * relative.doubt;
     let toward = if touching {
@@ -100,7 +128,7 @@ fn local_minimum(a: &Mesh, b: &Mesh, relative: &Relative, x: &Candidate, through
         (Feature::Edge(i), Feature::Edge(j)) => Some(relative.turn(&along(a, i)).cross(&along(b, j))),
         _ => None,
     };
-    let mut blur = CONE;
+    let mut blur = tilt;
     let direction = match fixed {
         Some(axis) if axis.dot(&toward) < 0.0 => -axis,
         Some(axis) => axis,

@@ -5,6 +5,7 @@
 //! to a value that says that this is no way out.
 
 use super::super::search::Search;
+use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{Constraint, StepOptions};
 use nalgebra::Isometry3;
 
@@ -12,35 +13,61 @@ use nalgebra::Isometry3;
 const STEPS: usize = 12;
 /// How deep features are looked for, in diagonals of A.
 const REACH: f64 = 0.05;
-/// The gap that is aimed at, in diagonals of A.
+/// The gap that is aimed at first, in diagonals of A.
 const CLEARANCE: f64 = 1e-3;
+/// And at least, where there is so much to see that less must do.
+const LEAST_REACH: f64 = 2e-3;
+/// What counts as a local minimum, as a sine.
+const TILT: f64 = 0.1;
+/// Pairs of triangles at most in a query.
+const WORK: usize = 12000;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 
+/// A free pose from the query's.
+pub fn push_out(search: &mut Search) -> Option<Isometry3<f64>> {
+    let start = search.start;
+    push_out_from(search, &start)
+}
+
 /// A free pose from one that overlaps.
-pub fn push_out(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>) -> Option<Isometry3<f64>> {
+    // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
+    let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
+    let mut clearance = CLEARANCE * search.size;
     let mut pose = *from;
     let mut reach = REACH * search.size;
+    let mut most = 0.5 * search.size;
     for _ in 0..STEPS {
         if !search.goes_on() {
             return None;
         }
-        search.pair.overlaps(&pose, reach, &mut search.scratch.contacts);
+        while !search.pair.overlaps(&pose, reach, TILT, WORK, &mut search.scratch.contacts) {
+            reach *= 0.5;
+            most = reach;
+            if reach < LEAST_REACH * search.size {
+                return None;
+            }
+        }
         search.limit_contacts();
         let scratch = &mut *search.scratch;
         if !scratch.contacts.iter().any(|c| c.gap < 0.0) {
-            reach *= 2.0;
+            if scratch.contacts.is_empty() && reach >= most {
+                return None;
+            }
+            // What still overlaps is deeper than the reach, or touches in a way that is no minimum: more of both.
+            reach = (2.0 * reach).min(most);
+            clearance *= 2.0;
         }
         scratch.constraints.clear();
         scratch.constraints.extend(scratch.contacts.iter().map(|c| Constraint {
             point: c.on_a,
             normal: c.normal,
-            gap: c.gap - CLEARANCE * search.size,
+            gap: c.gap - clearance,
         }));
         let options = StepOptions { trust: TRUST * search.size, tolerance: 1e-2 };
-        let step = search.metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
+        let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
         pose = step.twist.applied(&pose);
-        if std::env::var("DBG").is_ok() { eprintln!("  push reach {:.3} n {} neg {} end {:?} value {:.4} viol {:.2e}", reach, scratch.contacts.len(), scratch.contacts.iter().filter(|c| c.gap<0.0).count(), step.end, search.metric.distance(&search.start, &pose), step.violation); }
         if search.distance(&pose) > 1.2 * search.upper {
             return None;
         }

@@ -1,19 +1,40 @@
 //! Rays in configuration space: from the query's pose outward, to where A is free.
 //!
-//! A ray that is not free where it reaches the best value so far is given up after that one test.
+//! A ray is a translation or a screw about the metric's centre. It is tried where its value is a little more than the best ray's: is it not free
+//! there, it is given up after that one test. Otherwise bisection finds where it becomes free; the pose is a seed.
 
 use super::super::search::Search;
 use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-/// Directions of translation.
-const TRANSLATIONS: usize = 32;
-/// Screws.
-const SCREWS: usize = 64;
+/// How many rays, and which of them become seeds.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Translations, evenly spread.
+    pub translations: usize,
+    /// Random screws.
+    pub screws: usize,
+    /// How much worse than the best a ray may be.
+    pub worse: f64,
+    /// Seeds.
+    pub seeds: usize,
+}
+
+/// Seeds are farther from each other than this fraction of their value.
+const DIVERSE: f64 = 0.2;
+/// A ray's free pose is found to this fraction of its value.
+const ACCURACY: f64 = 0.02;
+
+/// A free pose and its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Seed {
+    pub pose: Isometry3<f64>,
+    pub value: f64,
+}
 
 /// Moves A out of B's box, along the axis that is nearest. There is always such a pose, so there always is an upper bound, but for
 /// coordinates at the end of what numbers can do.
-pub fn escape(search: &mut Search) {
+pub fn escape(search: &mut Search) -> Option<Seed> {
     let (low_b, high_b) = search.pair.b().bounds();
     let (low, high) = search.pair.a().bounds();
     let turn = search.start.rotation.to_rotation_matrix();
@@ -27,88 +48,77 @@ pub fn escape(search: &mut Search) {
     }
     shifts.sort_by(|x, y| x.norm_squared().total_cmp(&y.norm_squared()));
     for shift in shifts {
-        let pose = moved(&search.start, &shift);
+        let translation = Translation3::from(search.start.translation.vector + shift);
+        let pose = Isometry3::from_parts(translation, search.start.rotation);
         if !search.pair.collides(&pose) {
             search.take(&pose);
-            return;
+            return Some(Seed { pose, value: search.distance(&pose) });
         }
     }
-}
-
-/// A free pose and its value.
-#[derive(Clone, Copy, Debug)]
-pub struct Seed {
-    pub pose: Isometry3<f64>,
-    pub value: f64,
+    None
 }
 
 /// Translations into all directions, then random screws. Returns the best and diverse.
-pub fn cast(search: &mut Search) -> Vec<Seed> {
+pub fn cast(search: &mut Search, plan: &Plan, escape: &Seed) -> Vec<Seed> {
+    let mut found = vec![*escape];
+    let mut best = escape.value;
+    let mut shoot = |search: &mut Search, linear, angular| {
+        if search.goes_on()
+            && let Some(seed) = ray(search, linear, angular, plan.worse * best)
+        {
+            best = best.min(seed.value);
+            found.push(seed);
+        }
+    };
     let turn = search.random.rotation();
-    let mut found: Vec<Seed> = Vec::new();
-    for k in 0..TRANSLATIONS {
-        let direction = turn * on_sphere(k, TRANSLATIONS);
-        ray(search, &Motion { linear: direction, angular: Vector3::zeros() }, &mut found);
+    for k in 0..plan.translations {
+        shoot(search, turn * on_sphere(k, plan.translations), Vector3::zeros());
     }
-    for _ in 0..SCREWS {
+    for _ in 0..plan.screws {
         let (linear, angular) = (search.random.direction(), search.random.direction());
         let share = search.random.signed().abs();
-        ray(search, &Motion { linear: linear * share, angular: angular * (1.0 - share) }, &mut found);
+        shoot(search, linear * share, angular * (1.0 - share));
     }
     found.sort_by(|x, y| x.value.total_cmp(&y.value));
     let mut chosen: Vec<Seed> = Vec::new();
     for seed in found {
-        if chosen.len() < 4 && chosen.iter().all(|c| search.metric.distance(&c.pose, &seed.pose) > 0.3 * seed.value) {
+        let apart = |c: &Seed| search.metric.distance(&c.pose, &seed.pose) > DIVERSE * seed.value;
+        if chosen.len() < plan.seeds && chosen.iter().all(apart) {
             chosen.push(seed);
         }
     }
     chosen
 }
 
-/// A direction of motion: of the metric's centre, and a rotation vector times its radius.
-struct Motion {
-    linear: Vector3<f64>,
-    angular: Vector3<f64>,
-}
-
-const KEEP: f64 = 1.2;
-
-fn ray(search: &mut Search, motion: &Motion, found: &mut Vec<Seed>) {
-    if !search.goes_on() {
-        return;
-    }
-    let frame = search.metric.frame();
-    let radius = frame.radius;
-    let about = search.start * frame.centre;
-    let at = |s: f64| {
-        Twist { linear: motion.linear * s, angular: motion.angular * (s / radius), about }.applied(&search.start)
-    };
-    let most = KEEP * search.upper;
-    // The parameter where the metric is at its most.
-    let mut far = most;
+/// Where the motion s (linear, angular / radius) becomes free, if it is at the value `most`.
+fn ray(search: &mut Search, linear: Vector3<f64>, angular: Vector3<f64>, most: f64) -> Option<Seed> {
+    let (about, radius) = (search.start * search.metric.frame().centre, search.metric.frame().radius);
+    let start = search.start;
+    let at = |s: f64| Twist { linear: linear * s, angular: angular * (s / radius), about }.applied(&start);
+    // The value is nearly proportional to s.
+    let mut free = most;
     for _ in 0..6 {
-        let value = search.distance(&at(far));
-        if !(value > 0.0) { return; }
-        if (value - most).abs() < 0.01 * most { break; }
-        far *= most / value;
-        if !(far * motion.angular.norm() < 3.0 * radius) { return; }
+        let value = search.distance(&at(free));
+        if (value - most).abs() <= 0.01 * most {
+            break;
+        }
+        free *= most / value;
+        // Beyond a half turn the body comes back.
+        if !(free * angular.norm() < std::f64::consts::PI * radius) {
+            return None;
+        }
     }
-    if search.pair.collides(&at(far)) {
-        return;
+    if search.pair.collides(&at(free)) {
+        return None;
     }
-    let (mut free, mut hit) = (far, 0.0);
-    while free - hit > 0.02 * free {
-        let middle = 0.5 * (free + hit);
-        if search.pair.collides(&at(middle)) { hit = middle } else { free = middle }
+    let mut colliding = 0.0;
+    while free - colliding > ACCURACY * free {
+        let middle = 0.5 * (free + colliding);
+        if search.pair.collides(&at(middle)) { colliding = middle } else { free = middle }
     }
     let pose = at(free);
-    let value = search.distance(&pose);
     search.take(&pose);
-    found.push(Seed { pose, value });
-}
-
-fn moved(pose: &Isometry3<f64>, shift: &Vector3<f64>) -> Isometry3<f64> {
-    Isometry3::from_parts(Translation3::from(pose.translation.vector + shift), pose.rotation)
+    Some(Seed { pose, value: search.distance(&pose) })
 }
 
 /// The k-th of n evenly spread directions: Fibonacci's spiral.
