@@ -51,7 +51,8 @@ fn draw(cold: &[Cold], groups: &[&str], kind: Kind, file: &Path) -> Result<(), B
         .y_label_formatter(&power)
         .draw()?;
     for (i, group) in groups.iter().enumerate() {
-        let color = Palette99::pick(i).to_rgba();
+        // (Yellow, the third, is hard to see on white.)
+        let color = Palette99::pick(if i < 2 { i } else { i + 1 }).to_rgba();
         let points = points(cold, group, kind);
         // The efforts are a curve; the paper's sampling stands alone.
         let curve = points.iter().filter(|p| p.0 != "sampling").map(|p| (p.1, p.2));
