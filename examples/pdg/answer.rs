@@ -21,6 +21,8 @@ pub struct Row {
     pub lower: f64,
     pub upper: f64,
     pub pose: Isometry3<f64>,
+    /// Of the surfaces, when separated.
+    pub distance: Option<f64>,
     pub counters: Counters,
     pub ns: u64,
     pub known: Known,
@@ -38,6 +40,7 @@ pub fn ask(solver: &mut DepthSolver, query: &Query, kind: Kind, options: &DepthO
         lower: 0.0,
         upper: f64::INFINITY,
         pose: query.pose,
+        distance: None,
         counters: Counters::default(),
         ns: 0,
         known: query.known(kind),
@@ -48,6 +51,7 @@ pub fn ask(solver: &mut DepthSolver, query: &Query, kind: Kind, options: &DepthO
         let depth = solver.depth(&query.pose, metric, options, watch);
         row.ns = begin.elapsed().as_nanos() as u64;
         (row.outcome, row.counters) = (outcome(depth.outcome), depth.counters);
+        row.distance = depth.distance.map(|d| d.distance);
         (row.lower, row.upper, row.pose) = (depth.lower, depth.upper, depth.pose);
     }
     row
@@ -90,8 +94,8 @@ impl Row {
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let (q, t) = (self.pose.rotation.quaternion(), self.pose.translation.vector);
         let (lower, upper) = (self.lower, self.upper);
-        write!(out, "{},{},{},{lower},{upper},", quoted(&self.query), self.kind.name(), self.outcome)?;
-        write!(out, "{},{},{},{},{},{},{},", q.w, q.i, q.j, q.k, t.x, t.y, t.z)?;
+        write!(out, "{},{},{},{lower:?},{upper:?},", quoted(&self.query), self.kind.name(), self.outcome)?;
+        write!(out, "{:?},{:?},{:?},{:?},{:?},{:?},{:?},", q.w, q.i, q.j, q.k, t.x, t.y, t.z)?;
         writeln!(out, "{},{},{}", self.counters.collision, self.counters.contact, self.ns)
     }
 }
@@ -146,7 +150,7 @@ mod tests {
         assert_eq!((row.outcome, row.lower, row.upper), ("no_volume", 0.0, f64::INFINITY));
         let mut line = Vec::new();
         row.write(&mut line).unwrap();
-        assert!(String::from_utf8(line).unwrap().contains(",no_volume,0,inf,"));
+        assert!(String::from_utf8(line).unwrap().contains(",no_volume,0.0,inf,"));
         let point: Point3<f64> = row.pose * Point3::origin();
         assert_eq!(point.z, 0.5);
     }

@@ -43,6 +43,11 @@ impl Bar {
         ask(Some(&mut watch))
     }
 
+    /// Writes to the same terminal while the bar is not there.
+    pub fn aside<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.0.suspend(write)
+    }
+
     pub fn finish(&self) {
         self.0.finish_and_clear();
     }

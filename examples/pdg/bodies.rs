@@ -13,17 +13,23 @@ use crate::read;
 pub struct Bodies(BTreeMap<PathBuf, Model>);
 
 impl Bodies {
-    /// Of all files that the queries name. The trouble names the query and the file.
+    /// Of all files that the queries name. The trouble names the query, the field and the file.
     pub fn of(queries: &[Query]) -> Result<Bodies, String> {
         let mut bodies = Bodies::default();
         for query in queries {
-            for file in [&query.a, &query.b] {
-                if !bodies.0.contains_key(file) {
-                    bodies.add(file, model(file).map_err(|trouble| format!("{}: {trouble}", query.id))?);
-                }
+            for (field, file) in [("A", &query.a), ("B", &query.b)] {
+                bodies.read(file).map_err(|trouble| format!("{}: `{field}`: {trouble}", query.id))?;
             }
         }
         Ok(bodies)
+    }
+
+    /// Reads a file, unless it is there already. The trouble names the file.
+    pub fn read(&mut self, file: &Path) -> Result<(), String> {
+        if !self.0.contains_key(file) {
+            self.add(file, model(file)?);
+        }
+        Ok(())
     }
 
     pub fn add(&mut self, name: &Path, model: Model) {
@@ -53,5 +59,19 @@ pub fn metric(model: &Model, kind: Kind) -> Option<&dyn Metric> {
     match kind {
         Kind::Disp => Some(model.disp()),
         Kind::Sigma => model.sigma().map(|sigma| sigma as &dyn Metric),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use qdist::nalgebra::Isometry3;
+
+    #[test]
+    fn a_missing_file_is_named_with_its_query_and_field() {
+        let query = Query::new("one".into(), "missing.obj".into(), "b.obj".into(), Isometry3::identity());
+        let trouble = Bodies::of(&[query]).err().unwrap_or_default();
+        assert!(trouble.starts_with("one: `A`: missing.obj: "), "{trouble}");
+        assert!(Bodies::of(&[]).is_ok_and(|bodies| bodies.iter().next().is_none()));
     }
 }

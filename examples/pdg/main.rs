@@ -47,14 +47,16 @@ fn queries(source: &Source) -> Result<Vec<Query>, String> {
 
 fn run(request: &Request) -> Result<(), String> {
     let queries = queries(&request.source)?;
-    let mut bodies = Bodies::of(&queries)?;
-    if let Source::Pair(files, _) = &request.source {
-        // Without a pose too: then this is all.
-        let both = files
-            .iter()
-            .map(|file| Query::new(file.display().to_string(), file.clone(), file.clone(), Default::default()));
-        bodies = Bodies::of(&both.collect::<Vec<_>>())?;
-    }
+    let bodies = match &request.source {
+        Source::File(file) | Source::Table1(file) => {
+            Bodies::of(&queries).map_err(|trouble| format!("{}: {trouble}", file.display()))?
+        }
+        Source::Pair(files, _) => {
+            let mut bodies = Bodies::default();
+            files.iter().try_for_each(|file| bodies.read(file))?;
+            bodies
+        }
+    };
     for (file, model) in bodies.iter() {
         let report = words::report(file, model.mesh());
         if request.csv || !matches!(request.source, Source::Pair(..)) {
@@ -103,7 +105,7 @@ fn answer_all(request: &Request, queries: &[Query], bodies: &Bodies) -> Result<(
             rows.push(row);
         }
         // Who waits sees what there is.
-        out.flush()?;
+        bar.aside(|| out.flush())?;
     }
     bar.finish();
     if table1 && !request.csv {

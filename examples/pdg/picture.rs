@@ -258,3 +258,31 @@ impl View {
         nearest.into_iter().map(|(_, i)| i).filter(|&i| i != usize::MAX).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer;
+    use crate::input::Kind;
+    use qdist::mesh::Model;
+
+    #[test]
+    fn before_and_after_are_drawn() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let body = Model::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+        let mut solver = DepthSolver::new(&body, &body);
+        let folder = std::env::temp_dir().join(format!("qdist_picture_{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        // The second is free: nothing happens, and that is what is seen.
+        for (z, panels) in [(0.9, "before after"), (3.0, "before")] {
+            let query = Query::new("a/b".into(), "a".into(), "b".into(), Isometry3::translation(0.0, 0.0, z));
+            let row = answer::ask(&mut solver, &query, Kind::Disp, &DepthOptions::default(), None);
+            draw(&mut solver, &query, &row, &DepthOptions::default(), &folder).unwrap();
+            let picture = std::fs::read_to_string(folder.join("a_b_disp.svg")).unwrap();
+            assert!(panels.split(' ').all(|word| picture.contains(word)));
+            assert_eq!(picture.contains("after"), z < 1.0);
+            assert!(picture.matches("<polygon").count() > 50);
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

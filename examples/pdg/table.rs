@@ -23,7 +23,7 @@ pub fn line(out: &mut impl Write, row: &Row) -> io::Result<()> {
     writeln!(out, "{id:18} {kind:6} {outcome:11} {lower:>13} {upper:>13} {known:>13} {ratio:>9} {ms:>10.3}  {check}")
 }
 
-/// Six digits, whatever the size.
+/// Some digits, whatever the size.
 fn number(x: f64) -> String {
     if x == 0.0 || (1e-4..1e6).contains(&x) { format!("{x:.8}") } else { format!("{x:.6e}") }
 }
@@ -32,6 +32,9 @@ fn number(x: f64) -> String {
 fn check(row: &Row) -> String {
     if let Some(contradiction) = row.contradiction() {
         return contradiction.into();
+    }
+    if let Some(distance) = row.distance {
+        return format!("separated by {}", number(distance));
     }
     let width = match row.upper > 0.0 && row.upper.is_finite() {
         true => format!("true, {:.2} % wide", 100.0 * (1.0 - row.lower / row.upper)),
@@ -48,7 +51,9 @@ fn check(row: &Row) -> String {
 pub fn summary(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
     let mut groups: BTreeMap<(&str, Kind), Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        groups.entry((&row.group, row.kind)).or_default().push(row);
+        if !row.group.is_empty() {
+            groups.entry((&row.group, row.kind)).or_default().push(row);
+        }
         groups.entry(("all", row.kind)).or_default().push(row);
     }
     writeln!(
@@ -62,7 +67,6 @@ pub fn summary(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
         let worst = ratios.iter().copied().fold(0.0, f64::max);
         let certified = rows.iter().filter(|r| r.lower >= 0.95 * r.upper).count();
         let ms: Vec<f64> = rows.iter().map(|r| r.ns as f64 / 1e6).collect();
-        let group = if group.is_empty() { "-" } else { group };
         let (kind, count, known) = (kind.name(), rows.len(), ratios.len());
         let (near, certified) = (format!("{near}/{known}"), format!("{certified}/{count}"));
         let [median, late] = [0.5, 0.9].map(|share| quantile(&ms, share));

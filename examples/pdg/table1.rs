@@ -82,3 +82,18 @@ pub fn write(out: &mut impl Write, queries: &[Query], bodies: &Bodies, rows: &[R
     }
     writeln!(out, "\n{NOTES}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use qdist::nalgebra::Isometry3;
+
+    #[test]
+    fn pairs_are_known_by_their_names() {
+        let query = |a: &str, b: &str| Query::new(format!("{a}-{b}"), a.into(), b.into(), Isometry3::identity());
+        let found = select(vec![query("dir/pawn.obj", "cad.ply"), query("cad.obj", "pawn.obj"), query("x", "y")]);
+        let names: Vec<String> = found.unwrap().into_iter().map(|q| q.id).collect();
+        assert_eq!(names, ["dir/pawn.obj-cad.ply"]);
+        assert!(select(vec![query("a.obj", "b.obj")]).is_err());
+    }
+}
