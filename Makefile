@@ -1,6 +1,6 @@
 # The C side of qdist: libraries, header, C and C++ tests, proofs about the freestanding library. Rust alone needs only cargo.
 #
-#   make lib            freestanding static library (no std)       make demo          build and run examples/depth.c
+#   make lib            freestanding static library (no std)       make demo          build and run the C examples
 #   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
 #   make header         src/capi/f32 and include/qdist.h           make freestanding  a program without any libc
 #   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
@@ -57,6 +57,9 @@ demo: lib
 	@echo "building and running examples/depth.c"
 	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/depth.c $(lib) -o $(out)/depth
 	@$(out)/depth
+	@echo "building and running examples/gripper.c"
+	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/gripper.c $(lib) -lm -o $(out)/gripper
+	@$(out)/gripper
 
 # $(call c-tests,directory,extra flags,library,command in front)
 define c-tests

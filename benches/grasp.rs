@@ -9,32 +9,62 @@
 mod dice;
 
 use dice::Dice;
-use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet};
+use qdist::grasp::{
+    Contact, Finger, ForceModel, ForceOptions, ForceSolver, Friction, HandContact, Jacobian, Layout, Norm, Primitive,
+    PyramidalCone, Refined, WrenchFrame, WrenchSet, default_tolerance, linearized, wrenches,
+};
 use qdist::qset::Ball;
-use qdist::{Options, Outcome, Vector, Workspace};
+use qdist::{Answer, Options, Outcome, Vector, Workspace};
 use std::fmt::Write;
 use std::time::Instant;
 
 type Memory = Workspace<f64, 6, 512, 4096>;
-type Grasp = Vec<Primitive<f64>>;
+
+/// Contacts and their primitives.
+struct Grasp {
+    contacts: Vec<Contact<f64>>,
+    primitives: Vec<Primitive<f64>>,
+}
+
+impl Grasp {
+    fn new(contacts: Vec<Contact<f64>>) -> Self {
+        let mut memory = vec![Primitive::empty(); contacts.len()];
+        let primitives = wrenches(&contacts, &frame(), &mut memory).expect("primitives").to_vec();
+        Self { contacts, primitives }
+    }
+
+    fn set(&self, norm: Norm) -> WrenchSet<'_, f64> {
+        WrenchSet::new(&self.primitives, norm)
+    }
+}
+
+fn frame() -> WrenchFrame<f64> {
+    WrenchFrame::new(Vector::zeros(), 1.0).expect("a frame")
+}
 
 /// A soft fingertip that presses roughly towards the middle of the unit ball.
-fn fingertip(dice: &mut Dice) -> Primitive<f64> {
+fn fingertip(dice: &mut Dice) -> Contact<f64> {
     let p = Vector::<f64, 3>::from(dice.direction::<3>());
     let n = (Vector::<f64, 3>::from(dice.direction::<3>()) * 0.3 - p).normalize();
     let friction = Friction::Soft { mu: dice.range(0.3, 1.0), mus: dice.range(0.1, 0.4) };
-    let frame = WrenchFrame::new(Vector::zeros(), 1.0).expect("a frame");
-    let contact = Contact::new(p, n, friction).expect("a contact");
-    Primitive::passive(&contact, &frame).expect("a primitive")
+    Contact::new(p, n, friction).expect("a contact")
+}
+
+/// The d of the grasp with cones of this layout, over the exact one: what a tool that linearises them would report.
+fn linearised(memory: &mut Memory, grasp: &Grasp, norm: Norm, layout: &Layout<f64>, exact: f64) -> f64 {
+    let mut edges = vec![[0.0; 6]; 80 * grasp.contacts.len()];
+    let mut cones = vec![PyramidalCone::empty(); grasp.contacts.len()];
+    let cones = linearized(&grasp.contacts, &frame(), layout, &mut edges, &mut cones).expect("cones");
+    let options = Options { relative: 1e-3, absolute: 1e-6, ..Options::default() };
+    memory.solver().solve(&WrenchSet::new(cones, norm), &Ball::unit(), &options).lower.max(0.0) / exact
 }
 
 /// Force-closed grasps of so many contacts.
 fn grasps(dice: &mut Dice, memory: &mut Memory, contacts: usize, count: usize) -> Vec<Grasp> {
     let mut found = Vec::new();
     while found.len() < count {
-        let grasp: Grasp = (0..contacts).map(|_| fingertip(dice)).collect();
-        let set = WrenchSet::new(&grasp, Norm::LInf);
-        if memory.solver().force_closure(&set, &Options::default()).is_closed() {
+        let grasp = Grasp::new((0..contacts).map(|_| fingertip(dice)).collect());
+        if memory.solver().force_closure(&grasp.set(Norm::LInf), &Options::default()).is_closed() {
             found.push(grasp);
         }
     }
@@ -54,6 +84,22 @@ fn times<S>(list: &[S], mut ask: impl FnMut(&S)) -> Vec<f64> {
     }
     seconds.sort_by(f64::total_cmp);
     seconds
+}
+
+/// Three fingers of so many contacts, whose four joints have torque limits that bind.
+fn hand(dice: &mut Dice, contacts: usize) -> Vec<Finger<f64>> {
+    let mut fingers = Vec::new();
+    while fingers.len() < 3 {
+        let contact = |dice: &mut Dice| {
+            let rows: Vec<[f64; 4]> = (0..4).map(|_| std::array::from_fn(|_| dice.signed())).collect();
+            let jacobian = Jacobian::new([&rows[0], &rows[1], &rows[2], &rows[3]]).expect("a Jacobian");
+            HandContact { contact: fingertip(dice), jacobian: Some(jacobian) }
+        };
+        let list: Vec<_> = (0..contacts).map(|_| contact(dice)).collect();
+        let finger = Finger::new(&list, &[0.3; 4], ForceModel::Passive, &frame(), default_tolerance());
+        fingers.extend(finger);
+    }
+    fingers
 }
 
 struct Report {
@@ -88,18 +134,21 @@ fn main() -> std::process::ExitCode {
         "question", "m", "norm", "rel", "median ms", "p90 ms", "max ms", "per s"
     );
     let mut bars = Vec::new();
+    let mut theirs =
+        [Layout::Inscribed { sides: 8 }, Layout::GraspIt { millimetre: 0.01 }, Layout::Inscribed { sides: 64 }]
+            .map(|layout| (layout, Vec::new()));
     for contacts in [2, 3, 4, 5, 8] {
         let list = grasps(&mut dice, &mut memory, contacts, count);
         for norm in [Norm::L1, Norm::LInf] {
             let seconds = times(&list, |g| {
-                memory.solver().force_closure(&WrenchSet::new(g, norm), &Options::default());
+                memory.solver().force_closure(&g.set(norm), &Options::default());
             });
             report.row("closed?", contacts, norm, 0.0, &seconds);
             for relative in [1e-2, 1e-3, 1e-4] {
                 let options = Options { relative, ..Options::default() };
                 let mut open = 0;
                 let seconds = times(&list, |g| {
-                    let answer = memory.solver().solve(&WrenchSet::new(g, norm), &Ball::unit(), &options);
+                    let answer = memory.solver().solve(&g.set(norm), &Ball::unit(), &options);
                     open += usize::from(answer.outcome != Outcome::Converged);
                 });
                 assert_eq!(open, 0, "queries that did not converge");
@@ -110,16 +159,63 @@ fn main() -> std::process::ExitCode {
                     _ => {}
                 }
             }
+            let coarse = Options { relative: 1e-2, ..Options::default() };
+            let answers: Vec<_> =
+                list.iter().map(|g| memory.solver().solve(&g.set(norm), &Ball::unit(), &coarse)).collect();
+            let pairs: Vec<_> = list.iter().zip(&answers).collect();
+            let seconds = times(&pairs, |(g, answer)| {
+                let refined = Refined::new(&g.set(norm), &Ball::unit(), answer);
+                for (index, contact) in g.contacts.iter().enumerate() {
+                    let hand = HandContact { contact: *contact, jacobian: None };
+                    let _ = refined.gradient(index, &hand, &frame(), default_tolerance());
+                }
+            });
+            report.row("gradients", contacts, norm, 1e-2, &seconds);
+            for relative in [1e-3, 1e-6, 1e-9] {
+                let options = ForceOptions { relative, ..ForceOptions::default() };
+                let mut shares = vec![Vector::zeros(); contacts];
+                let load = Vector::from([0.0, 0.0, -0.1, 0.01, 0.0, 0.02]);
+                let seconds = times(&list, |g| {
+                    let _ = ForceSolver::new().resist(&g.set(norm), &load, &options, &mut shares);
+                });
+                report.row("forces", contacts, norm, relative, &seconds);
+            }
+            for (layout, shares) in &mut theirs {
+                if contacts <= 5 {
+                    let ratio = |(g, a): &(&Grasp, &Answer<f64, 6>)| linearised(&mut memory, g, norm, layout, a.upper);
+                    let mut ratios: Vec<f64> = pairs.iter().take(20).map(ratio).collect();
+                    ratios.sort_by(f64::total_cmp);
+                    shares.push((contacts, norm, ratios[ratios.len() / 2], ratios[0]));
+                }
+            }
             for relative in [1e-2, 1e-3] {
                 let options = Options { relative, ..Options::default() };
                 let seconds = times(&[&list], |list| {
-                    let sets = list.iter().map(|g| WrenchSet::new(g, norm));
+                    let sets = list.iter().map(|g| g.set(norm));
                     memory.solver().best_of(sets, &Ball::unit(), &options);
                 });
                 let each = vec![seconds[0] / count as f64; count];
                 report.row("best of all", contacts, norm, relative, &each);
             }
         }
+    }
+    for contacts in [1, 2] {
+        let hands: Vec<Vec<Finger<f64>>> = (0..count.min(20)).map(|_| hand(&mut dice, contacts)).collect();
+        for relative in [1e-2, 1e-3] {
+            let options = Options { relative, max_iterations: 2000, ..Options::default() };
+            let seconds = times(&hands, |fingers| {
+                memory.solver().solve(&WrenchSet::new(fingers, Norm::LInf), &Ball::unit(), &options);
+            });
+            report.row(&format!("limits, k = {contacts}"), 3 * contacts, Norm::LInf, relative, &seconds);
+        }
+    }
+    println!("\nd with linearised cones over the exact d: median (least) of 20 grasps; soft contacts, L1 and Linf");
+    for (layout, shares) in &theirs {
+        print!("{:<34}", format!("{layout:?}"));
+        for (contacts, norm, median, least) in shares {
+            print!("  {contacts}{} {median:.2} ({least:.2})", if *norm == Norm::L1 { "" } else { "∞" });
+        }
+        println!();
     }
     println!();
     for (what, median, bar) in &bars {

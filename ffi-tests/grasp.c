@@ -131,6 +131,113 @@ static void Q(closures)(qdist_solver *solver) {
     CHECK(Q(qdist_best_of6)(solver, sets, 2, NULL, NULL, &best) == QDIST_ERROR_STRUCT_SIZE);
 }
 
+/* Two fingertips hold a weight by friction: each presses with weight / (2 mu). */
+static void Q(forces)(void) {
+    const double weight = 0.75, size = 0.75 / (2 * 0.5);
+    Q(qdist_contact) contacts[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
+    const REAL down[3] = {0, 0, (REAL)-weight}, none[3] = {0, 0, 0}, aside[3] = {0, (REAL)NAN, 0};
+    Q(qdist_primitive) primitives[2];
+    const Q(qdist_wrenches) w = {primitives, 2, QDIST_LINF};
+    Q(qdist_force_memory) memory;
+    Q(qdist_force_options) options;
+    Q(qdist_forces) forces;
+    REAL external[6], shares[12], force[4];
+    uint32_t first, i, k;
+    memset(&memory, 0, sizeof memory);
+    memset(&options, 0, sizeof options);
+    forces.struct_size = sizeof forces;
+    CHECK(Q(qdist_passive_primitives)(contacts, 2, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_wrench)(&Q(frame), down, none, external) == QDIST_OK);
+    CHECK(Q(qdist_contact_forces)(&w, &memory, external, NULL, shares, &forces) == QDIST_OK);
+    CHECK(forces.outcome == QDIST_FORCES_CONVERGED && memory.count > 0);
+    CHECK(forces.lower <= size * (1 + 1e-6) && size * (1 - 1e-6) <= forces.upper && forces.upper - forces.lower < 2 * WIDTH);
+    CHECK(forces.residual < 10 * WIDTH * weight);
+    for (k = 0; k < 6; ++k) CHECK(fabs(shares[k] + shares[6 + k] + external[k]) < 10 * WIDTH);
+    for (i = 0; i < 2; ++i) {
+        CHECK(Q(qdist_contact_force)(&contacts[i], &Q(frame), shares + 6 * i, force) == QDIST_OK);
+        CHECK(fabs(force[0] - size) < 2 * WIDTH && force[0] >= 0);
+        CHECK(sqrt((force[1] * force[1] + force[2] * force[2]) / 0.25 + force[3] * force[3] / 0.01) <= force[0] * 1.00001);
+    }
+    first = forces.iterations;
+    CHECK(Q(qdist_contact_forces)(&w, &memory, external, NULL, shares, &forces) == QDIST_OK && forces.iterations <= first);
+
+    options.struct_size = sizeof options;
+    options.limit = (REAL)(0.5 * size);
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, &options, shares, &forces) == QDIST_OK);
+    CHECK(forces.outcome == QDIST_FORCES_ABOVE && forces.lower > 0.5 * size * 0.999);
+
+    contacts[0].friction = contacts[1].friction = QDIST_HARD; /* they cannot hold a torque about their line */
+    CHECK(Q(qdist_passive_primitives)(contacts, 2, &Q(frame), primitives, NULL) == QDIST_OK);
+    external[3] = 1;
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, shares, &forces) == QDIST_OK);
+    CHECK(forces.outcome == QDIST_FORCES_NOT_RESISTIBLE && forces.direction[3] < -0.1 && shares[0] == 0);
+
+    forces.iterations = 77;
+    shares[0] = 7;
+    external[1] = (REAL)NAN;
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, shares, &forces) == QDIST_ERROR_NONFINITE);
+    external[1] = 0;
+    memory.count = 7;
+    CHECK(Q(qdist_contact_forces)(&w, &memory, external, NULL, shares, &forces) == QDIST_ERROR_ARGUMENT);
+    options.relative = -1;
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, &options, shares, &forces) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, NULL, &forces) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_contact_forces)(NULL, NULL, external, NULL, shares, &forces) == QDIST_ERROR_NULL);
+    CHECK(forces.iterations == 77 && shares[0] == 7);
+    forces.struct_size = 0;
+    CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, shares, &forces) == QDIST_ERROR_STRUCT_SIZE);
+    CHECK(Q(qdist_wrench)(&Q(frame), aside, none, external) == QDIST_ERROR_NONFINITE);
+    CHECK(Q(qdist_contact_force)(&contacts[0], &Q(frame), external, NULL) == QDIST_ERROR_NULL);
+}
+
+/* d is proportional to all caps; a symmetric grasp has a rival. */
+static void Q(gradients)(qdist_solver *solver) {
+    const REAL p[3][3] = {{1, (REAL)0.1, (REAL)0.2}, {(REAL)-0.4, (REAL)0.8, (REAL)0.1}, {(REAL)-0.5, (REAL)-0.9, (REAL)-0.2}};
+    Q(qdist_contact) contacts[3];
+    Q(qdist_primitive) primitives[3];
+    Q(qdist_wrenches) w = {primitives, 3, QDIST_L1};
+    Q(qdist_contact_gradient) gradients[3];
+    Q(qdist_refined) refined;
+    Q(qdist_options) options;
+    Q(qdist_result) result;
+    Q(qdist_set) set;
+    double sum = 0;
+    uint32_t i, k, which = 9;
+    memset(contacts, 0, sizeof contacts);
+    for (i = 0; i < 3; ++i) {
+        const double length = sqrt((double)p[i][0] * p[i][0] + (double)p[i][1] * p[i][1] + (double)p[i][2] * p[i][2]);
+        for (k = 0; k < 3; ++k) contacts[i].position[k] = p[i][k], contacts[i].normal[k] = (REAL)(-p[i][k] / length);
+        contacts[i].friction = QDIST_SOFT, contacts[i].mu = (REAL)0.5, contacts[i].mus = (REAL)0.2;
+    }
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    options.relative = (REAL)1e-2;
+    result.struct_size = sizeof result;
+    refined.struct_size = sizeof refined;
+    CHECK(Q(qdist_passive_primitives)(contacts, 3, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
+    CHECK(Q(qdist_solve6)(solver, &set, NULL, &options, &result) == QDIST_OK);
+    CHECK(Q(qdist_grasp_gradients)(&w, contacts, 3, &Q(frame), 0, 0, NULL, &result, &refined, gradients, &which) == QDIST_OK);
+    CHECK(refined.kink == QDIST_KINK_NONE && refined.upper <= result.upper && refined.upper >= result.lower && which == 9);
+    for (i = 0; i < 3; ++i) {
+        CHECK(gradients[i].known == 1 && gradients[i].mu >= 0 && gradients[i].jacobian_known == 0);
+        sum += gradients[i].force_cap;
+    }
+    CHECK(fabs(sum - refined.upper) < 0.1 * WIDTH);
+    CHECK(Q(qdist_grasp_gradients)(&w, contacts, 2, &Q(frame), 0, 0, NULL, &result, &refined, gradients, NULL)
+          == QDIST_ERROR_ARGUMENT);
+    contacts[2].mu = -1;
+    CHECK(Q(qdist_grasp_gradients)(&w, contacts, 3, &Q(frame), 0, 0, NULL, &result, &refined, gradients, &which)
+              == QDIST_ERROR_CONTACT_FRICTION
+          && which == 2);
+    contacts[0] = Q(fingertip)(-1, (REAL)0.5, (REAL)0.1), contacts[1] = Q(fingertip)(1, (REAL)0.5, (REAL)0.1);
+    w.count = 2;
+    CHECK(Q(qdist_passive_primitives)(contacts, 2, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
+    CHECK(Q(qdist_solve6)(solver, &set, NULL, &options, &result) == QDIST_OK);
+    CHECK(Q(qdist_grasp_gradients)(&w, contacts, 2, &Q(frame), 0, 0, NULL, &result, &refined, gradients, NULL) == QDIST_OK);
+    CHECK(refined.kink != QDIST_KINK_NONE && gradients[0].known == 0);
+}
+
 /* An error says what is wrong and with which contact, and nothing is written. */
 static void Q(errors)(void) {
     const Q(qdist_contact) good[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
@@ -199,6 +306,8 @@ static void Q(grasp)(void) {
     if (solver == NULL) return;
     Q(table)(solver);
     Q(closures)(solver);
+    Q(forces)();
+    Q(gradients)(solver);
     Q(errors)();
 }
 

@@ -178,6 +178,9 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // A rank tolerance below 16 roundoffs or above 1/2.
 #define QDIST_ERROR_TOLERANCE 22
 
+// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
+#define QDIST_ERROR_TORQUE_LIMIT 23
+
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
 

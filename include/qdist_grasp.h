@@ -37,6 +37,9 @@ extern "C" {
  *
  * Small numbers with names, for both scalars. */
 
+// What did a search for contact forces conclude?
+typedef int32_t qdist_force_outcome;
+
 // The friction of a contact.
 typedef uint32_t qdist_friction;
 
@@ -45,6 +48,9 @@ typedef uint32_t qdist_norm;
 
 // Is a grasp force-closed?
 typedef int32_t qdist_closure;
+
+// Why has d no gradient?
+typedef int32_t qdist_kink;
 
 // A normal force only. mu and mus are not read.
 #define QDIST_FRICTIONLESS 0
@@ -69,6 +75,43 @@ typedef int32_t qdist_closure;
 
 // Memory, iterations or `interrupt` ended the query before either was certain.
 #define QDIST_CLOSURE_UNDECIDED 2
+
+// It has one.
+#define QDIST_KINK_NONE 0
+
+// Another direction bounds d as tightly: the minimiser is not unique.
+#define QDIST_KINK_RIVAL 1
+
+// Two or more points of Q touch the boundary of the wrench set.
+#define QDIST_KINK_GAUGE 2
+
+// No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
+// way, d is constant along a curve, or the result was too far from a minimum.
+#define QDIST_KINK_DEGENERATE 3
+
+// d is not known to be above 0.
+#define QDIST_KINK_NOT_CLOSED 4
+
+// The bracket is as narrow as asked for, and so is the equilibrium.
+#define QDIST_FORCES_CONVERGED 0
+
+// Stopped early: the least size is above the limit.
+#define QDIST_FORCES_ABOVE 1
+
+// No contact forces resist the wrench, up to rounding: `direction` separates.
+#define QDIST_FORCES_NOT_RESISTIBLE 2
+
+// Arithmetic does not allow a narrower bracket, or a better equilibrium. So ends a wrench on the very boundary of what can be resisted.
+#define QDIST_FORCES_PRECISION 3
+
+// The iteration limit is reached.
+#define QDIST_FORCES_ITERATIONS 4
+
+// A primitive is no number; the status is QDIST_ERROR_CALLBACK.
+#define QDIST_FORCES_FAILED 5
+
+// The name of an outcome, e.g. "not resistible". A static string, never NULL.
+const char *qdist_force_outcome_string(qdist_force_outcome outcome);
 
 /* ===================================================== CONTACTS AND FINGERS =====================================================
  *
@@ -240,6 +283,133 @@ qdist_status qdist_best_of6_f64(qdist_solver *solver,
                                 const qdist_options_f64 *options,
                                 qdist_best_f64 *best);
 
+/* ======================================================== CONTACT FORCES ========================================================
+ *
+ * The smallest contact forces that resist one given wrench: how a controller distributes a load. Microseconds for a few contacts, no
+ * solver and no memory but the stack, about 4 KB in double. Size is measured in force caps: 1 is the caps themselves. */
+
+// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and changes nothing else. Plain numbers;
+// start with `= {0}`.
+typedef struct {
+    // 0 to 6.
+    uint32_t count;
+    // Coordinate k of direction i is directions[6 * i + k].
+    double directions[36];
+} qdist_force_memory_f64;
+
+// When a search for contact forces ends. NULL stands for the defaults.
+typedef struct {
+    // sizeof(qdist_force_options_f64).
+    uint32_t struct_size;
+    // The most calls of the support function, beside some 20 at the beginning; 0: 1000.
+    uint32_t max_iterations;
+    // The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
+    double relative;
+    // Larger forces are of no interest: the search ends when the least size is known to be above; 0: no limit.
+    double limit;
+} qdist_force_options_f64;
+
+// What is known about the least size of contact forces that resist a wrench.
+typedef struct {
+    // sizeof(qdist_forces_f64); set it before the call.
+    uint32_t struct_size;
+    // What was concluded.
+    qdist_force_outcome outcome;
+    // All forces that resist the wrench have at least this size: `direction` proves it. DBL_MAX (float: FLT_MAX): no forces do.
+    double lower;
+    // The shares have at most this size; DBL_MAX (float: FLT_MAX): none were found, and all shares are 0.
+    double upper;
+    // The unit vector u that proves `lower`: u.w / h_W(u), with w the negative of the external wrench.
+    double direction[6];
+    // |sum of the shares + external wrench|: how far the shares are from equilibrium. The bracket is that of what they exert.
+    double residual;
+    // Calls of the support function, those at the beginning not counted.
+    uint32_t iterations;
+    // QDIST_CALLBACK_NONFINITE when a primitive is no number; else 0.
+    int32_t callback_code;
+} qdist_forces_f64;
+
+// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
+// times position. `force` and `moment` are three numbers, `wrench` six.
+qdist_status qdist_wrench_f64(const qdist_wrench_frame_f64 *frame,
+                              const double *force,
+                              const double *moment,
+                              double *wrench);
+
+// The smallest contact forces that keep the object in equilibrium with an external wrench.
+//
+// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
+// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
+// negative of the external wrench. qdist_contact_force makes a force of it.
+qdist_status qdist_contact_forces_f64(const qdist_wrenches_f64 *wrenches,
+                                      qdist_force_memory_f64 *memory,
+                                      const double *external,
+                                      const qdist_force_options_f64 *options,
+                                      double *shares,
+                                      qdist_forces_f64 *result);
+
+// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
+// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+qdist_status qdist_contact_force_f64(const qdist_contact_f64 *contact,
+                                     const qdist_wrench_frame_f64 *frame,
+                                     const double *share,
+                                     double *force);
+
+/* ========================================================== GRADIENTS ==========================================================
+ *
+ * How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
+ * Newton's method, in some 10 to 100 microseconds; where d has no gradient there, `kink` says why. */
+
+// The weakest direction to rounding.
+typedef struct {
+    // sizeof(qdist_refined_f64); set it before the call.
+    uint32_t struct_size;
+    // QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
+    qdist_kink kink;
+    // d is not more; not above that of the result. (`lower` stays as it is: only the result's bracket tells how far a deeper minimum may be.)
+    double upper;
+    // The unit vector that proves `upper`.
+    double direction[6];
+} qdist_refined_f64;
+
+// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
+typedef struct {
+    // 0: there is none, and all numbers are 0: a kink, or a contact whose joints press on the very edge of its friction cone.
+    uint32_t known;
+    // 0: not with respect to the Jacobian: there is none, or the active forces do not change smoothly with it.
+    uint32_t jacobian_known;
+    // With respect to the position.
+    double position[3];
+    // With respect to a small turn of n, o and t together, as a rotation vector.
+    double rotation[3];
+    // With respect to the normal, along the unit sphere; o and t turn with it.
+    double normal[3];
+    // With respect to mu and mus; 0 where the model has none.
+    double mu;
+    double mus;
+    // With respect to the force cap.
+    double force_cap;
+    // With respect to the entries of the Jacobian.
+    double jacobian[32];
+} qdist_contact_gradient_f64;
+
+// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
+// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
+// tolerance of 1e-2 is usually enough.
+//
+// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
+                                       const qdist_contact_f64 *contacts,
+                                       uint32_t count,
+                                       const qdist_wrench_frame_f64 *frame,
+                                       uint32_t active,
+                                       double rank_tolerance,
+                                       const qdist_gauge_f64 *q,
+                                       const qdist_result_f64 *result,
+                                       qdist_refined_f64 *refined,
+                                       qdist_contact_gradient_f64 *gradients,
+                                       uint32_t *which);
+
 /* ================================================= CONTACTS AND FINGERS, FLOAT ================================================= */
 
 typedef struct {
@@ -339,6 +509,81 @@ qdist_status qdist_best_of6_f32(qdist_solver *solver,
                                 const qdist_gauge_f32 *q,
                                 const qdist_options_f32 *options,
                                 qdist_best_f32 *best);
+
+/* ==================================================== CONTACT FORCES, FLOAT ==================================================== */
+
+typedef struct {
+    uint32_t count;
+    float directions[36];
+} qdist_force_memory_f32;
+
+typedef struct {
+    uint32_t struct_size;
+    uint32_t max_iterations;
+    float relative;
+    float limit;
+} qdist_force_options_f32;
+
+typedef struct {
+    uint32_t struct_size;
+    qdist_force_outcome outcome;
+    float lower;
+    float upper;
+    float direction[6];
+    float residual;
+    uint32_t iterations;
+    int32_t callback_code;
+} qdist_forces_f32;
+
+qdist_status qdist_wrench_f32(const qdist_wrench_frame_f32 *frame,
+                              const float *force,
+                              const float *moment,
+                              float *wrench);
+
+qdist_status qdist_contact_forces_f32(const qdist_wrenches_f32 *wrenches,
+                                      qdist_force_memory_f32 *memory,
+                                      const float *external,
+                                      const qdist_force_options_f32 *options,
+                                      float *shares,
+                                      qdist_forces_f32 *result);
+
+qdist_status qdist_contact_force_f32(const qdist_contact_f32 *contact,
+                                     const qdist_wrench_frame_f32 *frame,
+                                     const float *share,
+                                     float *force);
+
+/* ======================================================= GRADIENTS, FLOAT ======================================================= */
+
+typedef struct {
+    uint32_t struct_size;
+    qdist_kink kink;
+    float upper;
+    float direction[6];
+} qdist_refined_f32;
+
+typedef struct {
+    uint32_t known;
+    uint32_t jacobian_known;
+    float position[3];
+    float rotation[3];
+    float normal[3];
+    float mu;
+    float mus;
+    float force_cap;
+    float jacobian[32];
+} qdist_contact_gradient_f32;
+
+qdist_status qdist_grasp_gradients_f32(const qdist_wrenches_f32 *wrenches,
+                                       const qdist_contact_f32 *contacts,
+                                       uint32_t count,
+                                       const qdist_wrench_frame_f32 *frame,
+                                       uint32_t active,
+                                       float rank_tolerance,
+                                       const qdist_gauge_f32 *q,
+                                       const qdist_result_f32 *result,
+                                       qdist_refined_f32 *refined,
+                                       qdist_contact_gradient_f32 *gradients,
+                                       uint32_t *which);
 
 #ifdef __cplusplus
 }

@@ -78,7 +78,7 @@
 //!
 //! # Features
 //!
-//! * `std`: square roots from the standard library. Nothing else changes.
+//! * `std`: square roots from the standard library, and `grasp`.
 //! * `grasp`: contacts, friction and hands as sets.
 //! * `capi`: the C functions. `panic-handler`: for the freestanding C library.
 //!

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, with_pieces};
 use crate::common::dice::Dice;
 use crate::input::{self, Query};
 use crate::mesh_common::{Shape, l_shape, random_pose, slot, torus, torus_knot};
@@ -39,7 +39,7 @@ impl Scenes {
 
     fn read() -> Result<Scenes, String> {
         let queries = input::queries(Path::new(SHARED))?;
-        let bodies = Bodies::of(&queries)?;
+        let bodies = Bodies::of(&queries, |_| ())?;
         Ok(Scenes { queries, bodies, benchmarks: vec!["knot", "cad", "hammer"], shared: true })
     }
 
@@ -67,7 +67,7 @@ impl Scenes {
                 }
             }
             for (file, model) in files.iter().zip(models) {
-                bodies.add(file, model);
+                bodies.add(file, with_pieces(model));
             }
         }
         Ok(Scenes { queries, bodies, benchmarks, shared: false })

@@ -22,13 +22,17 @@ impl Bar {
         Bar(bar)
     }
 
+    pub fn say(&self, what: &str) {
+        self.0.set_message(what.to_string());
+    }
+
     /// One query, which may be watched.
     pub fn during<R>(&self, index: usize, name: &str, ask: impl FnOnce(Option<Watch>) -> R) -> R {
         if self.0.is_hidden() {
             return ask(None);
         }
         self.0.set_position(index as u64 * STEPS);
-        self.0.set_message(name.to_string());
+        self.say(name);
         let mut last = Instant::now();
         let mut watch = |progress: &Progress| {
             if last.elapsed() > PAUSE {

@@ -1,8 +1,9 @@
-//! The bodies of some queries: every mesh file is read once.
+//! The bodies of some queries: every mesh file is read once, and cut into the convex pieces that lower bounds come from.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use qdist::mesh::certificate::BuildOptions;
 use qdist::mesh::metric::Metric;
 use qdist::mesh::{Mesh, Model};
 
@@ -14,10 +15,12 @@ pub struct Bodies(BTreeMap<PathBuf, Model>);
 
 impl Bodies {
     /// Of all files that the queries name. The trouble names the query, the field and the file.
-    pub fn of(queries: &[Query]) -> Result<Bodies, String> {
+    /// `tell` hears of every file before it is read: pieces may take a second.
+    pub fn of(queries: &[Query], tell: impl Fn(&Path)) -> Result<Bodies, String> {
         let mut bodies = Bodies::default();
         for query in queries {
             for (field, file) in [("A", &query.a), ("B", &query.b)] {
+                tell(file);
                 bodies.read(file).map_err(|trouble| format!("{}: `{field}`: {trouble}", query.id))?;
             }
         }
@@ -47,11 +50,16 @@ impl Bodies {
     }
 }
 
+/// With pieces where that is possible; a polygon soup has no lower bounds.
+pub fn with_pieces(model: Model) -> Model {
+    model.clone().with_pieces(&BuildOptions::default()).unwrap_or(model)
+}
+
 fn model(file: &Path) -> Result<Model, String> {
     let named = |trouble: String| format!("{}: {trouble}", file.display());
     let shape = read::mesh(file)?;
     let mesh = Mesh::new(&shape.vertices, &shape.triangles).map_err(|e| named(e.to_string()))?;
-    Model::from_mesh(mesh).map_err(|e| named(e.to_string()))
+    Model::from_mesh(mesh).map(with_pieces).map_err(|e| named(e.to_string()))
 }
 
 /// A metric of a body; a polygon soup has no object norm.
@@ -70,8 +78,8 @@ mod tests {
     #[test]
     fn a_missing_file_is_named_with_its_query_and_field() {
         let query = Query::new("one".into(), "missing.obj".into(), "b.obj".into(), Isometry3::identity());
-        let trouble = Bodies::of(&[query]).err().unwrap_or_default();
+        let trouble = Bodies::of(&[query], |_| ()).err().unwrap_or_default();
         assert!(trouble.starts_with("one: `A`: missing.obj: "), "{trouble}");
-        assert!(Bodies::of(&[]).is_ok_and(|bodies| bodies.iter().next().is_none()));
+        assert!(Bodies::of(&[], |_| ()).is_ok_and(|bodies| bodies.iter().next().is_none()));
     }
 }

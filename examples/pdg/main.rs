@@ -47,10 +47,10 @@ fn queries(source: &Source) -> Result<Vec<Query>, String> {
 
 fn run(request: &Request) -> Result<(), String> {
     let queries = queries(&request.source)?;
+    let bar = Bar::new(queries.len() * request.kinds.len());
     let bodies = match &request.source {
-        Source::File(file) | Source::Table1(file) => {
-            Bodies::of(&queries).map_err(|trouble| format!("{}: {trouble}", file.display()))?
-        }
+        Source::File(file) | Source::Table1(file) => Bodies::of(&queries, |file| bar.say(&file.display().to_string()))
+            .map_err(|trouble| format!("{}: {trouble}", file.display()))?,
         Source::Pair(files, _) => {
             let mut bodies = Bodies::default();
             files.iter().try_for_each(|file| bodies.read(file))?;
@@ -58,7 +58,7 @@ fn run(request: &Request) -> Result<(), String> {
         }
     };
     for (file, model) in bodies.iter() {
-        let report = words::report(file, model.mesh());
+        let report = words::report(file, model);
         if request.csv || !matches!(request.source, Source::Pair(..)) {
             // Only what is wrong, and not between the answers.
             if !model.mesh().report().is_clean() {
@@ -68,10 +68,15 @@ fn run(request: &Request) -> Result<(), String> {
             print!("{report}");
         }
     }
-    answer_all(request, &queries, &bodies).map_err(|e| e.to_string())
+    answer_all(request, &queries, &bodies, &bar).map_err(|e| e.to_string())
 }
 
-fn answer_all(request: &Request, queries: &[Query], bodies: &Bodies) -> Result<(), Box<dyn std::error::Error>> {
+fn answer_all(
+    request: &Request,
+    queries: &[Query],
+    bodies: &Bodies,
+    bar: &Bar,
+) -> Result<(), Box<dyn std::error::Error>> {
     let table1 = matches!(request.source, Source::Table1(_));
     let mut out = BufWriter::new(io::stdout().lock());
     let readable = !request.csv && !table1 && !queries.is_empty();
@@ -86,7 +91,6 @@ fn answer_all(request: &Request, queries: &[Query], bodies: &Bodies) -> Result<(
     let options = DepthOptions { effort: request.effort, seed: request.seed, ..DepthOptions::default() };
     let mut solvers: HashMap<_, DepthSolver> = HashMap::new();
     let mut rows: Vec<Row> = Vec::new();
-    let bar = Bar::new(queries.len() * request.kinds.len());
     for query in queries {
         let solver = solvers
             .entry((&query.a, &query.b))

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use qdist::mesh::Mesh;
+use qdist::mesh::Model;
 use qdist::mesh::mass::MassProperties;
 use qdist::nalgebra::Point3;
 
@@ -11,7 +11,8 @@ use qdist::nalgebra::Point3;
 const TOLD: usize = 3;
 
 /// Several lines.
-pub fn report(file: &Path, mesh: &Mesh) -> String {
+pub fn report(file: &Path, model: &Model) -> String {
+    let mesh = model.mesh();
     let report = mesh.report();
     let (triangles, vertices, components) = (mesh.triangles().len(), mesh.vertices().len(), report.components);
     let mut text = format!("{}: triangles {triangles}, vertices {vertices}, components {components}: ", file.display());
@@ -20,6 +21,10 @@ pub fn report(file: &Path, mesh: &Mesh) -> String {
         (true, Ok(mass)) => text += &format!("a solid of volume {:.6e}", mass.volume),
         (true, Err(_)) => text += "a solid",
         (false, _) => text += "a polygon soup. Queries see its surface only, and it has no object norm",
+    }
+    match model.pieces().map_or(0, |p| p.pieces().len()) {
+        0 => text += ", without convex pieces: lower bounds are 0",
+        count => text += &format!(", convex pieces {count}"),
     }
     text += if report.is_clean() { ", clean\n" } else { "\n" };
     let point = |p: &Point3<f64>| format!("({}, {}, {})", p.x, p.y, p.z);
@@ -59,14 +64,15 @@ mod tests {
     const TRIANGLES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
     fn of(triangles: &[[u32; 3]]) -> String {
-        report(Path::new("body.off"), &Mesh::new(&CORNERS, triangles).unwrap())
+        let model = crate::bodies::with_pieces(Model::new(&CORNERS, triangles).unwrap());
+        report(Path::new("body.off"), &model)
     }
 
     #[test]
     fn a_clean_mesh_says_so() {
         assert_eq!(of(&TRIANGLES).lines().count(), 1);
         assert!(of(&TRIANGLES).contains("body.off: triangles 4, vertices 4, components 1: a solid of volume 1.66"));
-        assert!(of(&TRIANGLES).ends_with(", clean\n"));
+        assert!(of(&TRIANGLES).ends_with(", convex pieces 1, clean\n"));
     }
 
     #[test]

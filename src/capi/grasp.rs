@@ -5,9 +5,11 @@
 use super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CAPACITY, QDIST_ERROR_CONTACT_CAP, QDIST_ERROR_CONTACT_FRICTION,
     QDIST_ERROR_CONTACT_JACOBIAN, QDIST_ERROR_CONTACT_NORMAL, QDIST_ERROR_CONTACT_POSITION,
-    QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_TOLERANCE, qdist_status,
+    QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_NONFINITE,
+    QDIST_ERROR_TOLERANCE, QDIST_ERROR_TORQUE_LIMIT, qdist_status,
 };
-use crate::grasp::{ContactError, GraspError, Norm};
+use crate::grasp::{ContactError, ForceError, ForceOutcome, GraspError, Kink, Norm};
+use core::ffi::c_char;
 
 /// The friction of a contact.
 pub type qdist_friction = u32;
@@ -37,6 +39,81 @@ pub const QDIST_CLOSURE_CLOSED: qdist_closure = 1;
 /// Memory, iterations or `interrupt` ended the query before either was certain.
 pub const QDIST_CLOSURE_UNDECIDED: qdist_closure = 2;
 
+/// Why has d no gradient?
+pub type qdist_kink = i32;
+
+/// It has one.
+pub const QDIST_KINK_NONE: qdist_kink = 0;
+/// Another direction bounds d as tightly: the minimiser is not unique.
+pub const QDIST_KINK_RIVAL: qdist_kink = 1;
+/// Two or more points of Q touch the boundary of the wrench set.
+pub const QDIST_KINK_GAUGE: qdist_kink = 2;
+/// No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
+/// way, d is constant along a curve, or the result was too far from a minimum.
+pub const QDIST_KINK_DEGENERATE: qdist_kink = 3;
+/// d is not known to be above 0.
+pub const QDIST_KINK_NOT_CLOSED: qdist_kink = 4;
+
+pub(super) fn kink(kink: Option<Kink>) -> qdist_kink {
+    match kink {
+        None => QDIST_KINK_NONE,
+        Some(Kink::Rival) => QDIST_KINK_RIVAL,
+        Some(Kink::Gauge) => QDIST_KINK_GAUGE,
+        Some(Kink::Degenerate) => QDIST_KINK_DEGENERATE,
+        Some(Kink::NotClosed) => QDIST_KINK_NOT_CLOSED,
+    }
+}
+
+/// What did a search for contact forces conclude?
+pub type qdist_force_outcome = i32;
+
+/// The bracket is as narrow as asked for, and so is the equilibrium.
+pub const QDIST_FORCES_CONVERGED: qdist_force_outcome = 0;
+/// Stopped early: the least size is above the limit.
+pub const QDIST_FORCES_ABOVE: qdist_force_outcome = 1;
+/// No contact forces resist the wrench, up to rounding: `direction` separates.
+pub const QDIST_FORCES_NOT_RESISTIBLE: qdist_force_outcome = 2;
+/// Arithmetic does not allow a narrower bracket, or a better equilibrium. So ends a wrench on the very boundary of what can be resisted.
+pub const QDIST_FORCES_PRECISION: qdist_force_outcome = 3;
+/// The iteration limit is reached.
+pub const QDIST_FORCES_ITERATIONS: qdist_force_outcome = 4;
+/// A primitive is no number; the status is QDIST_ERROR_CALLBACK.
+pub const QDIST_FORCES_FAILED: qdist_force_outcome = 5;
+
+pub(super) fn force_outcome(outcome: ForceOutcome) -> qdist_force_outcome {
+    match outcome {
+        ForceOutcome::Converged => QDIST_FORCES_CONVERGED,
+        ForceOutcome::Above => QDIST_FORCES_ABOVE,
+        ForceOutcome::NotResistible => QDIST_FORCES_NOT_RESISTIBLE,
+        ForceOutcome::Precision => QDIST_FORCES_PRECISION,
+        ForceOutcome::Iterations => QDIST_FORCES_ITERATIONS,
+        ForceOutcome::SupportFailed => QDIST_FORCES_FAILED,
+    }
+}
+
+/// The name of an outcome, e.g. "not resistible". A static string, never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_force_outcome_string(outcome: qdist_force_outcome) -> *const c_char {
+    match outcome {
+        QDIST_FORCES_CONVERGED => c"converged",
+        QDIST_FORCES_ABOVE => c"above",
+        QDIST_FORCES_NOT_RESISTIBLE => c"not resistible",
+        QDIST_FORCES_PRECISION => c"precision",
+        QDIST_FORCES_ITERATIONS => c"iterations",
+        QDIST_FORCES_FAILED => c"failed",
+        _ => c"unknown outcome",
+    }
+    .as_ptr()
+}
+
+pub(super) fn from_force(error: ForceError) -> qdist_status {
+    match error {
+        ForceError::Wrench => QDIST_ERROR_NONFINITE,
+        ForceError::Tolerance | ForceError::Limit => QDIST_ERROR_ARGUMENT,
+        ForceError::Room => QDIST_ERROR_CAPACITY,
+    }
+}
+
 pub(super) fn norm(norm: qdist_norm) -> Check<Norm> {
     match norm {
         QDIST_L1 => Ok(Norm::L1),
@@ -55,6 +132,7 @@ pub(super) fn from_contact(error: ContactError) -> qdist_status {
         ContactError::Frame => QDIST_ERROR_FRAME,
         ContactError::Wrench => QDIST_ERROR_CONTACT_WRENCH,
         ContactError::Jacobian | ContactError::Coupling => QDIST_ERROR_CONTACT_JACOBIAN,
+        ContactError::TorqueLimit { .. } => QDIST_ERROR_TORQUE_LIMIT,
         ContactError::Tolerance => QDIST_ERROR_TOLERANCE,
         ContactError::Room => QDIST_ERROR_CAPACITY,
     }

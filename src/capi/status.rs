@@ -61,6 +61,8 @@ pub const QDIST_ERROR_CONTACT_WRENCH: qdist_status = 20;
 pub const QDIST_ERROR_FRAME: qdist_status = 21;
 /// A rank tolerance below 16 roundoffs or above 1/2.
 pub const QDIST_ERROR_TOLERANCE: qdist_status = 22;
+/// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
+pub const QDIST_ERROR_TORQUE_LIMIT: qdist_status = 23;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -142,6 +144,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_CONTACT_WRENCH => c"contact wrench too large",
         QDIST_ERROR_FRAME => c"wrench frame out of range",
         QDIST_ERROR_TOLERANCE => c"rank tolerance out of range",
+        QDIST_ERROR_TORQUE_LIMIT => c"torque limits out of range",
         _ => c"unknown status",
     }
     .as_ptr()

@@ -28,13 +28,22 @@ pub enum ContactError {
     Coupling,
     /// A rank tolerance below 16 roundoffs or above 1/2.
     Tolerance,
-    /// The list for the results is too short.
+    /// The list for the results is too short, or a finger has more contacts than [`MAX_CONTACTS`](super::MAX_CONTACTS).
     Room,
+    /// The torque limit of a joint is negative or not a number, or there is not one limit for each joint. `contact` of a
+    /// [`GraspError`] is then 0.
+    TorqueLimit {
+        /// Index of the joint, from 0; of a list of a wrong length, the first joint without limit or limit without joint.
+        joint: usize,
+    },
 }
 
 impl fmt::Display for ContactError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::TorqueLimit { joint } => {
+                return write!(f, "the torque limit of joint {joint} is negative, or missing");
+            }
             Self::Position => "the position is not finite or too large",
             Self::Normal => "the normal is not a unit vector",
             Self::Tangents => "the tangents are not unit vectors with n = o x t",

@@ -4,7 +4,7 @@ use nalgebra::SMatrix;
 
 use super::contact::{Contact, ContactError};
 use super::{ceiling, usable};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 
 /// Reference point and torque scale of wrenches: a wrench is (force, moment about `reference` / `torque_scale`).
 ///
@@ -62,11 +62,65 @@ impl<T: Real> WrenchFrame<T> {
         SMatrix::from_columns(&[column(n), column(o), column(t), Vector::from([zero, zero, zero, n.x, n.y, n.z])])
     }
 
+    /// The wrench of a force on the object and a moment about the reference point, in the units of force and of force times position.
+    pub fn wrench(&self, force: &Vector<T, 3>, moment: &Vector<T, 3>) -> Vector<T, 6> {
+        let scaled = moment.map(|x| x / self.torque_scale);
+        Vector::from([force.x, force.y, force.z, scaled.x, scaled.y, scaled.z])
+    }
+
+    /// The contact force (f1, f2, f3, f4) that exerts a wrench: components along n, o, t, and the spin moment about n, in the unit of force
+    /// times position. (eq. 2 solved for f; G has full column rank. Moments about o and t follow from the force, and are not read.)
+    ///
+    /// What the contact's friction does not allow at all, spin at a hard finger, say, is zero. A force outside of the cone by no more than the
+    /// rounding of the wrench, 64 (1 + mu) roundoffs of its size, is moved onto it; any other is returned as it is.
+    ///
+    /// ```
+    /// use qdist::{Vector, grasp::{Contact, ContactError, Friction, WrenchFrame}};
+    /// let frame = WrenchFrame::new(Vector::zeros(), 0.5)?;
+    /// let finger = Friction::Soft { mu: 1.0, mus: 0.25 };
+    /// let contact = Contact::new(Vector::from([0.0, 1.0, 0.0]), Vector::from([0.0, -1.0, 0.0]), finger)?;
+    /// let wrench = frame.wrench(&Vector::from([0.0, -8.0, 0.0]), &Vector::from([0.0, -1.0, 0.0]));
+    /// assert_eq!(frame.contact_force(&contact, &wrench), Vector::from([8.0, 0.0, 0.0, 1.0]));
+    /// # Ok::<(), ContactError>(())
+    /// ```
+    pub fn contact_force(&self, contact: &Contact<T>, wrench: &Vector<T, 6>) -> Vector<T, 4> {
+        let ([o, t], n) = (contact.tangents(), contact.normal());
+        let [x, y, z, moments @ ..] = wrench.data.0[0];
+        let force = Vector::from([x, y, z]);
+        // Tangents and normal are orthonormal up to what a contact tolerates: their dual basis.
+        let duals = [o.cross(t), t.cross(n), n.cross(o)];
+        let volume = n.dot(&duals[0]);
+        let [f1, f2, f3] = duals.map(|dual| force.dot(&dual) / volume);
+        let arm = contact.position() - self.reference;
+        let moment = Vector::from(moments.map(|x| x * self.torque_scale));
+        let f4 = n.dot(&(moment - arm.cross(&force))) / n.dot(n);
+        let rounding = T::count(64) * T::ROUNDOFF * (T::one() + contact.friction().coefficients().0);
+        let (slide, spin) = (rounding * norm(&force), rounding * (norm(&moment) + norm(&arm) * norm(&force)));
+        onto_cone(contact, &Vector::from([f1, f2, f3, f4]), slide, spin)
+    }
+
     /// The radii of the friction ellipsoid at unit normal force: mu along o and t, mus / L for the spin moment.
     pub(super) fn friction_radii(&self, contact: &Contact<T>) -> [T; 3] {
         let (mu, mus) = contact.friction().coefficients();
         [mu, mu, mus / self.torque_scale]
     }
+}
+
+/// The force moved onto the friction cone, where it is outside by no more than its rounding: of f1 to f3 `slide`, of f4 `spin`.
+fn onto_cone<T: Real>(contact: &Contact<T>, force: &Vector<T, 4>, slide: T, spin: T) -> Vector<T, 4> {
+    let zero = T::zero();
+    let [f1, friction @ ..] = force.data.0[0];
+    let press = if f1 < zero && -f1 <= slide { zero } else { f1 };
+    let (mu, mus) = contact.friction().coefficients();
+    let (radii, roundings) = ([mu, mu, mus], [slide, slide, spin]);
+    let allowed = |i: usize, x: T| if radii[i] > zero { x / radii[i] } else { zero };
+    let share = Vector::<T, 3>::from_fn(|i, _| allowed(i, friction[i]));
+    let rounding = (0..3).fold(slide, |sum, i| sum + allowed(i, roundings[i]));
+    // Somewhat inside: whoever checks rounds, too.
+    let (used, inside) = (norm(&share), press * (T::one() - T::count(8) * T::ROUNDOFF));
+    let factor = if used > inside && used - inside <= rounding { inside / used } else { T::one() };
+    let scaled = |i: usize| share[i] * factor * radii[i];
+    Vector::from([press, scaled(0), scaled(1), scaled(2)])
 }
 
 #[cfg(test)]

@@ -152,6 +152,9 @@ pub struct HandContact<T> {
 
 /// The active primitives of a hand, into the front of `out`; the slice of them is returned. Palm contacts are passive.
 ///
+/// Every contact is judged alone, against its own Jacobian. Where a finger has several contacts the set of them is an
+/// upper estimate of what its joints can make together: see [`Finger`](super::Finger).
+///
 /// ```
 /// use qdist::{Vector, grasp::*};
 /// let frame = WrenchFrame::new(Vector::zeros(), 1.0)?;

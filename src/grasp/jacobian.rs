@@ -72,6 +72,12 @@ impl<T: Real> Jacobian<T> {
         Ok(Self { rows, joints: actuators })
     }
 
+    /// Column j, with its spin entry times `torque_scale`: what a force, moments divided by the scale, does to joint j.
+    pub(super) fn column(&self, j: usize, torque_scale: T) -> [T; 4] {
+        let [n, o, t, spin] = self.rows.each_ref().map(|row| row.get(j).copied().unwrap_or(T::zero()));
+        [n, o, t, spin * torque_scale]
+    }
+
     /// The number q of columns.
     pub fn joints(&self) -> usize {
         self.joints

@@ -60,18 +60,44 @@
 //! or empty ([`ActiveForces`]); a contact without Jacobian, the palm, keeps U_i ([`HandContact`]). W^a may be flat:
 //! [`Subspace`] finds the smallest subspace R that contains it.
 //!
+//! A finger as a whole is a [`Finger`]: its contacts share the joints, whose torques have limits. The tuples of its
+//! contact forces
+//!
+//! ```text
+//! F = { (f_1, ..., f_k) : f_i in its friction cone, f_i1 <= c_i, |sum J_i^T f_i| <= tau }        W_finger = sum G_i F
+//! ```
+//!
+//! are a convex set that contains 0. Actively, the tuple is also in the range of the Jacobians on top of each other:
+//! the torques of the joints make all its forces *together* (eq. 9-10 for several contacts). Without limits and with
+//! one contact W_finger is hull({0} ∪ W_i) or hull({0} ∪ W_i^a). It has no closed form in general; its support
+//! function is the value of a small convex program, each time with a proof that the point is as good as promised.
+//! [`WrenchSet`] takes fingers instead of primitives:
+//!
+//! ```text
+//! W_Linf(tau) = W_finger 1 + ... + W_finger m        W_L1(tau) = hull(W_finger 1 ∪ ... ∪ W_finger m)
+//! ```
+//!
+//! In L1 the fingers share one supply, the contacts of one finger do not.
+//!
+//! W^a of a hand whose fingers have several contacts is that of its active fingers. [`active_wrenches`] judges
+//! contacts one by one, each against its own Jacobian, as if the others did not need the joints. It is in closed form
+//! and some hundred times faster; of fingers with one contact it is W^a, of others an upper estimate.
+//!
 //! # Beside d
 //!
 //! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
 //!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
 //! * [`mod@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//! * [`Closure`]: is the grasp force-closed? Yes or no, with a ball in W or a direction that separates. [`Best`](crate::Best): the best of
+//!   many grasps.
+//! * [`ForceSolver`]: the smallest contact forces that resist one given wrench, in microseconds: the same question with a segment for
+//!   Q, and the shares of all contacts as its answer.
 //!
 //! # What is not modelled
 //!
 //! * Compliance and dynamics: links, fingertips and object are rigid and at rest.
-//! * Two contacts of one finger are judged one by one, each against its own Jacobian, as if the other did
-//!   not need the joints. The forces that joint torques generate *together* are a subset; W^a is then an upper estimate.
-//! * Torque limits of the joints: the cap bounds the normal force of a contact, not the torque that makes it.
+//! * Joints that several fingers share, and limits that are not symmetric, such as those of a tendon that only pulls.
+//! * Which of many possible contact forces a passive finger really has: its structure may bear anything that friction permits.
 //!
 //! # Failure
 //!
@@ -82,33 +108,34 @@
 //!
 //! The paper's Sections II and III. R. M. Murray, Z. X. Li, S. S. Sastry, *A Mathematical Introduction to Robotic
 //! Manipulation*, 1994 (contact maps, friction models). J. Demmel and K. Veselic, *Jacobi's method is more accurate
-//! than QR*, 1992 (the SVD).
+//! than QR*, 1992 (the SVD). L. Vandenberghe, *The CVXOPT linear and quadratic cone program solvers*, 2010 (fingers).
 
 mod closure;
 mod contact;
+mod finger;
+mod forces;
 mod frame;
 mod gradient;
 mod hand;
 mod jacobian;
 pub mod linearized;
-mod minimum;
-mod newton;
 mod primitive;
-mod refine;
 mod span;
 mod svd;
-mod ties;
 mod wrench_set;
 
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
+pub use finger::{Finger, ForceModel, MAX_CONTACTS, UNSOLVED};
+#[cfg(feature = "capi")]
+pub(crate) use forces::check as check_forces;
+pub use forces::{ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces};
 pub use frame::WrenchFrame;
-pub use gradient::ContactGradient;
+pub use gradient::{ContactGradient, Kink, Refined, Share};
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
 pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, opposed_mean};
 pub use primitive::Primitive;
-pub use refine::{Kink, Refined, Share};
 pub use span::Subspace;
 pub use wrench_set::{Contribution, Norm, WrenchSet};
 

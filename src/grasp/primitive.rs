@@ -31,18 +31,20 @@ use crate::support::{Failure, Support};
 /// # Ok::<(), ContactError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)] // numbers in a row, as C callers keep them
 pub struct Primitive<T> {
     center: Vector<T, 6>,
     disc: SMatrix<T, 6, 3>,
-    empty: bool,
     /// Bound of what rounding has moved center + disc x by, when they were computed.
     rounding: T,
+    /// 0 or 1.
+    empty: u32,
 }
 
 impl<T: Real> Primitive<T> {
     /// The empty set: a contact that can exert nothing. In a [`WrenchSet`](super::WrenchSet) it is as if it were not there.
     pub fn empty() -> Self {
-        Self { center: Vector::zeros(), disc: SMatrix::zeros(), empty: true, rounding: T::zero() }
+        Self { center: Vector::zeros(), disc: SMatrix::zeros(), rounding: T::zero(), empty: 1 }
     }
 
     /// { center + disc x : |x| <= 1 } for any wrenches: a contact model of your own. A disc of zeros is a point.
@@ -53,13 +55,7 @@ impl<T: Real> Primitive<T> {
         if !(usable(center.iter()) && usable(disc.iter())) {
             return Err(ContactError::Wrench);
         }
-        Ok(Self { center, disc, empty: false, rounding: T::zero() })
-    }
-
-    /// A primitive of numbers that [`rounding`](Self::rounding) and the public functions told; they are not checked.
-    #[cfg(feature = "capi")]
-    pub(crate) fn of_parts(center: Vector<T, 6>, disc: SMatrix<T, 6, 3>, rounding: T, empty: bool) -> Self {
-        Self { center, disc, empty, rounding }
+        Ok(Self { center, disc, rounding: T::zero(), empty: 0 })
     }
 
     /// All wrenches of the contact with its full normal force, whoever generates them: G(U) with the U of eq. 7 times
@@ -97,21 +93,15 @@ impl<T: Real> Primitive<T> {
         &self.disc
     }
 
-    /// How far rounding may have moved it when it was made.
-    #[cfg(feature = "capi")]
-    pub(crate) fn rounding(&self) -> T {
-        self.rounding
-    }
-
     /// Has it no wrench at all?
     pub fn is_empty(&self) -> bool {
-        self.empty
+        self.empty != 0
     }
 
     /// h(u) for u not far from unit length, to within [`error`](Support::error) |u|; `-HUGE` for the empty set. About
     /// 50 operations.
     pub fn value(&self, u: &Vector<T, 6>) -> T {
-        if self.empty { -T::HUGE } else { self.farthest(u).value }
+        if self.is_empty() { -T::HUGE } else { self.farthest(u).value }
     }
 
     /// The value and what the point needs. `u` near unit length ([`near_unit`]), or rounding may go below the format's
@@ -148,7 +138,7 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
     /// # Errors
     /// The empty set has no point.
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
-        if self.empty {
+        if self.is_empty() {
             return Err(Failure(crate::EMPTY));
         }
         Ok(self.point(&self.farthest(&near_unit(u))))
@@ -172,7 +162,7 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
 
 impl<T: Real> Contribution<T> for Primitive<T> {
     fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
-        if self.empty {
+        if self.is_empty() {
             return Ok(None);
         }
         let farthest = self.farthest(u);

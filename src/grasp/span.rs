@@ -42,11 +42,6 @@ impl<T: Real> Subspace<T> {
     /// # Errors
     /// [`ContactError::Tolerance`].
     pub fn new(primitives: &[Primitive<T>], tolerance: T) -> Result<Self, ContactError> {
-        Self::of(primitives.iter().copied(), tolerance)
-    }
-
-    /// The same for primitives that are made on the way.
-    pub(crate) fn of(primitives: impl Iterator<Item = Primitive<T>>, tolerance: T) -> Result<Self, ContactError> {
         check_tolerance(tolerance)?;
         let mut triangle = Triangle::new();
         let mut touched = [false; 6];

@@ -4,8 +4,10 @@
 //!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
 //!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
 //!      ray                        the simplex that a ray pierces
+//!       basis                     its points, and the inverse of their matrix
 //! ```
 
+pub(crate) mod basis;
 mod cone;
 mod conewise;
 pub(crate) mod expansion;

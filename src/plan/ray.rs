@@ -20,61 +20,42 @@
 //! The inverse is updated, and its error is not bounded; it does not need to be. The weights >= 0 stand for a point
 //! x = Σ w a / Σ w of A, whatever they are, and t q is off x by what is measured ([`Ray::reach`]).
 
+use super::basis::Basis;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Corner, Simplex, Vertex};
 use heapless::Vec;
-use nalgebra::SMatrix;
 
 /// A ray and the simplex that it pierces.
 #[derive(Clone)]
 pub(crate) struct Ray<T, const N: usize> {
     target: Vector<T, N>,
-    corners: [Vertex<T, N>; N],
-    artificial: [bool; N],
-    inverse: SMatrix<T, N, N>,
-    /// inverse * target, >= 0.
+    basis: Basis<T, N>,
+    /// The target's coordinates in the basis, >= 0.
     weights: Vector<T, N>,
 }
 
 impl<T: Real, const N: usize> Ray<T, N> {
     /// A ray along `target` from artificial corners at the distance `size` > 0.
     pub fn new(target: &Vector<T, N>, size: T) -> Self {
-        let mut ray = Ray {
-            target: *target,
-            corners: [Vertex::empty(); N],
-            artificial: [true; N],
-            inverse: SMatrix::zeros(),
-            weights: target.map(|x| x.abs() / size),
-        };
-        for i in 0..N {
-            let along = if target[i] < T::zero() { -size } else { size };
-            ray.corners[i].point[i] = along;
-            ray.inverse[(i, i)] = T::one() / along;
-        }
-        ray
+        let along = target.map(|x| if x < T::zero() { -size } else { size });
+        Ray { target: *target, basis: Basis::new(&along), weights: target.map(|x| x.abs() / size) }
     }
 
     /// The ray along another target, if that pierces the same simplex.
     pub fn aimed(mut self, target: &Vector<T, N>) -> Option<Self> {
         self.target = *target;
-        self.weights = self.inverse * target;
+        self.weights = self.basis.coordinates(target);
         self.weights.iter().all(|&w| w >= T::zero()).then_some(self)
     }
 
     /// The plane y.x = 1 through the corners.
     pub fn plane(&self) -> Vector<T, N> {
-        let mut plane = Vector::zeros();
-        for j in 0..N {
-            for i in 0..N {
-                plane[j] += self.inverse[(i, j)];
-            }
-        }
-        plane
+        self.basis.plane(&Vector::repeat(T::one()))
     }
 
     /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
     pub fn enter(&mut self, vertex: &Vertex<T, N>) -> bool {
-        let shares = self.inverse * vertex.point;
+        let shares = self.basis.coordinates(&vertex.point);
         // The first weight to vanish decides (Harris' ratio test: of those that vanish together, up to rounding, the one with
         // the largest pivot).
         let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
@@ -99,26 +80,10 @@ impl<T: Real, const N: usize> Ray<T, N> {
         if pivot < largest * T::ROUNDOFF.root() {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
         }
-        let mut row = Vector::<T, N>::zeros();
+        self.basis.exchange(out, vertex, &shares);
         for i in 0..N {
-            if i == out {
-                let pivot = T::one() / shares[i];
-                self.corners[i] = *vertex;
-                self.artificial[i] = false;
-                self.weights[i] = step;
-                for j in 0..N {
-                    self.inverse[(i, j)] *= pivot;
-                    row[j] = self.inverse[(i, j)];
-                }
-            }
-        }
-        for i in 0..N {
-            if i != out {
-                self.weights[i] = (self.weights[i] - shares[i] * step).at_least(T::zero());
-                for j in 0..N {
-                    self.inverse[(i, j)] -= shares[i] * row[j];
-                }
-            }
+            let left = (self.weights[i] - shares[i] * step).at_least(T::zero());
+            self.weights[i] = if i == out { step } else { left };
         }
         true
     }
@@ -126,36 +91,20 @@ impl<T: Real, const N: usize> Ray<T, N> {
     /// (t, e): t q is at most e off a point of conv A, up to the rounding of one sum. `None` while an artificial corner
     /// carries weight.
     pub fn reach(&self) -> Option<(T, T)> {
-        let carried = (0..N).all(|i| !self.artificial[i] || self.weights[i] == T::zero());
+        let carried = (0..N).all(|i| !self.basis.artificial[i] || self.weights[i] == T::zero());
         let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
         if !carried || !(sum > T::zero()) {
             return None;
         }
         let t = T::one() / sum;
-        let miss = self.point(t) - self.target * t;
+        let miss = self.basis.point(&(self.weights * t)) - self.target * t;
         Some((t, norm(&miss)))
     }
 
-    fn point(&self, t: T) -> Vector<T, N> {
-        let mut point = Vector::zeros();
-        for i in 0..N {
-            point += self.corners[i].point * (self.weights[i] * t);
-        }
-        point
-    }
-
-    /// One step of Newton's iteration for the inverse, X (2 - B X), after which the weights are as good as rounding allows.
+    /// Polishes the inverse, after which the weights are as good as rounding allows.
     pub fn polish(&mut self) {
-        let mut miss = SMatrix::<T, N, N>::identity();
-        for k in 0..N {
-            for j in 0..N {
-                for i in 0..N {
-                    miss[(i, j)] -= self.corners[k].point[i] * self.inverse[(k, j)];
-                }
-            }
-        }
-        self.inverse += self.inverse * miss;
-        self.weights = (self.inverse * self.target).map(|w| w.at_least(T::zero()));
+        self.basis.polish();
+        self.weights = self.basis.coordinates(&self.target).map(|w| w.at_least(T::zero()));
     }
 
     /// The pierced simplex; its weights are those of the crossing.
@@ -163,8 +112,8 @@ impl<T: Real, const N: usize> Ray<T, N> {
         let sum = self.weights.iter().fold(T::zero(), |sum, &w| sum + w);
         let mut corners = Vec::new();
         for i in 0..N {
-            if !self.artificial[i] {
-                let _ = corners.push(Corner { vertex: self.corners[i], weight: self.weights[i] / sum });
+            if !self.basis.artificial[i] {
+                let _ = corners.push(Corner { vertex: self.basis.points[i], weight: self.weights[i] / sum });
             }
         }
         Simplex { corners }

@@ -31,7 +31,11 @@ use super::super::status::{
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
+#[cfg(feature = "grasp")]
+use crate::Plan;
 use crate::scalar::{Real, Vector};
+#[cfg(feature = "grasp")]
+use crate::simplex::{Simplex, Vertex};
 use crate::solver::Solver;
 use crate::support::{alone, one_by_one};
 use crate::{Answer, Depth, Options, Outcome};
@@ -360,6 +364,33 @@ pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) ->
         *to = x;
     }
     result
+}
+
+/// The answer of a result in dimension 6, without the evidence for `lower`: what there is to know about the minimiser.
+#[cfg(feature = "grasp")]
+pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
+    finite(&[result.lower, result.upper, result.gauge])?;
+    finite(&result.direction).and(finite(&result.support)).and(finite(&result.rival))?;
+    let rival = flag(result.has_rival)?.then(|| Vector::from(result.rival));
+    Ok(Answer {
+        outcome: Outcome::Converged,
+        lower: result.lower,
+        upper: result.upper,
+        direction: Vector::from(result.direction),
+        support: Vector::from(result.support),
+        gauge: result.gauge,
+        rival,
+        plan: Plan::Expansion,
+        witness: Simplex::new(Vertex::empty()),
+        dimension: result.dimension as usize,
+        iterations: result.iterations,
+        support_calls: result.support_calls,
+        vertices: 0,
+        facets: 0,
+        cones: 0,
+        splits: 0,
+        failure: 0,
+    })
 }
 
 /// A query in dimension `N` whose arguments have passed the checks.

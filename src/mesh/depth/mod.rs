@@ -6,7 +6,9 @@
 //!
 //! (Zhang, Kim and Manocha 2007). The metric is a length: the largest displacement of A's points, or their root mean
 //! square. Local minima abound, and no practical method finds the least of them with certainty; so the answer is a bracket. The upper bound
-//! is the metric of a pose that is proved free by the solid test, and the lower bound holds whatever the search missed.
+//! is the metric of a pose that is proved free by the solid test, and the lower bound is that of the convex pieces of both bodies (module
+//! [`certificate`](super::certificate)), which holds whatever the search missed. It is 0 for models without pieces
+//! ([`Model::with_pieces`]).
 //!
 //! # The search
 //!
@@ -39,24 +41,14 @@ mod search;
 mod seeds;
 mod walk;
 
+use super::certificate::Certifier;
+pub use super::certificate::Effort;
 use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};
 use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
-
-/// How much is done for a depth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// A few seeds: an upper bound at once.
-    Fast,
-    /// What finds nearly all minima.
-    #[default]
-    Default,
-    /// Several times as much, and a lower bound with care.
-    Heavy,
-}
 
 /// How the boundary of the free space is searched around a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,12 +156,12 @@ pub struct Progress<'a> {
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) -> bool + 'a);
 
 /// Two models and the memory of their queries.
-#[derive(Clone, Debug)]
 pub struct DepthSolver<'m> {
     a: &'m Model,
     b: &'m Model,
     pair: Pair<'m>,
     scratch: Scratch,
+    certifier: Certifier,
 }
 
 /// Memory that walks reuse.
@@ -188,6 +180,7 @@ impl<'m> DepthSolver<'m> {
             a,
             b,
             pair: Pair::new(a.mesh(), b.mesh()),
+            certifier: Certifier::new(),
             scratch: Scratch {
                 contacts: Vec::new(),
                 primitives: Vec::new(),

@@ -4,13 +4,17 @@ use super::random::Random;
 use super::seeds::{pushout, rays};
 use super::walk::{Bounds, CONTACTS, walk};
 use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
-use crate::mesh::metric::{Metric, Sigma};
-use crate::mesh::{Counters, Pair, Screw};
+use crate::mesh::certificate::Certifier;
+use crate::mesh::metric::{Certificate, Metric, Sigma};
+use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::Isometry3;
 
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
     pub scratch: &'s mut Scratch,
+    certifier: &'s mut Certifier,
+    a: &'m Model,
+    b: &'m Model,
     pub metric: &'s dyn Metric,
     /// A's object norm, if it has one.
     pub sigma: Option<&'m Sigma>,
@@ -67,6 +71,9 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             size: solver.a.mesh().diagonal(),
             pair: &mut solver.pair,
             scratch: &mut solver.scratch,
+            certifier: &mut solver.certifier,
+            a: solver.a,
+            b: solver.b,
             metric,
             sigma: solver.a.sigma(),
             options,
@@ -93,6 +100,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let distance = self.pair.distance(&self.start);
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
+        self.lower = self.certify();
         let plan = plan(self.options.effort);
         let escape = rays::escape(&mut self);
         for pose in self.options.poses {
@@ -193,6 +201,16 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose) } else { Some(*pose) };
         if let Some(seed) = seed {
             walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+        }
+    }
+
+    /// The lower bound, from the pieces of both bodies.
+    fn certify(&mut self) -> f64 {
+        let (Some(a), Some(b)) = (self.a.pieces(), self.b.pieces()) else { return 0.0 };
+        match self.metric.certificate() {
+            Certificate::None => 0.0,
+            Certificate::Disp => self.certifier.disp(a, b, &self.start, self.options.effort),
+            Certificate::SqrtSigma => self.certifier.sqrt_sigma(a, b, &self.start, self.options.effort),
         }
     }
 

@@ -9,7 +9,7 @@ use super::super::hull::{HullError, hull_vertices};
 use super::super::optimize::minimax::{self, Body, Field, stiffness};
 use super::super::optimize::quadratic::violation;
 use super::super::optimize::{Constraint, Quadratic, Step, StepEnd, StepError, StepMemory, StepOptions};
-use super::{BodyFrame, Metric, prepare, quadratic_step};
+use super::{BodyFrame, Certificate, Metric, prepare, quadratic_step};
 use core::fmt;
 use nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector3, Vector6};
 
@@ -196,6 +196,10 @@ impl Metric for Disp {
     fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let (matrix, vector) = self.frame.displacement(from, to);
         self.farthest(&Field { matrix, vector }).1.sqrt()
+    }
+
+    fn certificate(&self) -> Certificate {
+        Certificate::Disp
     }
 
     fn frame(&self) -> &BodyFrame {

@@ -77,10 +77,27 @@ impl BodyFrame {
 /// Contacts that contradict each other by less than this fraction of the body's radius hold: positions are not known better.
 const SLACK: f64 = 1e-10;
 
+/// Which lower bound of depths a metric admits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Certificate {
+    /// None: nothing is proved.
+    #[default]
+    None,
+    /// The metric is nowhere less than the body's largest displacement.
+    Disp,
+    /// It is nowhere less than the body's root mean square displacement.
+    SqrtSigma,
+}
+
 /// How far a body is from a pose, and which way back.
 pub trait Metric {
     /// The distance between two poses, a length: not negative, 0 between equal poses, proportional to the body's scale.
     fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64;
+
+    /// Which lower bound of depths holds for it.
+    fn certificate(&self) -> Certificate {
+        Certificate::None
+    }
 
     /// Where motions are measured.
     fn frame(&self) -> &BodyFrame;

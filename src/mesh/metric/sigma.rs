@@ -13,7 +13,7 @@
 
 use super::super::mass::MassProperties;
 use super::super::optimize::Quadratic;
-use super::{BodyFrame, Metric};
+use super::{BodyFrame, Certificate, Metric};
 use nalgebra::{Isometry3, Matrix3, Matrix6, Vector3, Vector6};
 
 /// Root mean square displacement over a solid.
@@ -62,6 +62,10 @@ impl Metric for Sigma {
         let (_, e) = self.frame.displacement(from, to);
         let (_, z) = self.rotation(from, to);
         (e.norm_squared() + z.dot(&z.component_mul(&self.gyration))).sqrt()
+    }
+
+    fn certificate(&self) -> Certificate {
+        Certificate::SqrtSigma
     }
 
     fn frame(&self) -> &BodyFrame {

@@ -2,5 +2,7 @@
 //! Grasps from C, for `f32`.
 
 pub mod contacts;
+pub mod forces;
+pub mod gradients;
 pub mod quality;
 pub mod wrenches;

@@ -6,12 +6,12 @@
 //! in the smallest subspace, for the active wrenches of fingers that cannot move in all directions; a segment as Q asks how large one wrench
 //! may be. In the result, `direction` is the weakest one, and the wrench of d * Q that is farthest along it the one that is hardest to exert.
 
-use super::super::super::generic::{aligned, array, length, shared};
-use super::super::super::grasp::{from_contact, norm, qdist_norm};
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
+use super::super::super::generic::{aligned, array, coordinates, flag, length, shared};
+use super::super::super::grasp::{norm, qdist_norm};
+use super::super::super::status::{Check, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
 use super::super::sets::{qdist_set_f32, room};
 use super::contacts::qdist_primitive_f32;
-use crate::grasp::{Contribution, Primitive, WrenchSet};
+use crate::grasp::WrenchSet;
 use crate::scalar::Vector;
 use crate::support::{Failure, Support, one_by_one};
 use core::ffi::c_void;
@@ -26,51 +26,29 @@ pub struct qdist_wrenches_f32 {
     pub norm: qdist_norm,
 }
 
-impl Support<f32, 6> for qdist_primitive_f32 {
-    fn support(&self, u: &Vector<f32, 6>) -> Result<Vector<f32, 6>, Failure> {
-        self.as_it_is().support(u)
-    }
-    fn extent(&self) -> f32 {
-        self.as_it_is().extent()
-    }
-    fn error(&self) -> f32 {
-        self.as_it_is().error()
-    }
-}
-
-impl Contribution<f32> for qdist_primitive_f32 {
-    fn reach(&self, u: &Vector<f32, 6>, floor: f32) -> Result<Option<(f32, Vector<f32, 6>)>, Failure> {
-        self.as_it_is().reach(u, floor)
-    }
-    fn is_mirror_of(&self, other: &Self, signs: &Vector<f32, 6>) -> bool {
-        self.as_it_is().is_mirror_of(&other.as_it_is(), signs)
-    }
-}
-
 impl qdist_wrenches_f32 {
     /// # Safety
     /// If not NULL and aligned, the list is valid for reads of `count` primitives for the life of the set.
-    pub(super) unsafe fn checked(&self) -> Check<WrenchSet<'_, f32, qdist_primitive_f32>> {
+    pub(super) unsafe fn checked(&self) -> Check<WrenchSet<'_, f32>> {
         let norm = norm(self.norm)?;
         // SAFETY: the caller's promise.
         let list = unsafe { array(self.primitives, Some(self.count as usize)) }?;
         for primitive in list {
-            Primitive::new(Vector::from(primitive.center), *primitive.as_it_is().disc()).map_err(from_contact)?;
+            coordinates(&primitive.center).and(coordinates(&primitive.disc)).map_err(|_| QDIST_ERROR_CONTACT_WRENCH)?;
             length(primitive.rounding)?;
-            if primitive.empty > 1 {
-                return Err(QDIST_ERROR_ARGUMENT);
-            }
+            flag(primitive.empty)?;
         }
-        Ok(WrenchSet::new(list, norm))
+        Ok(WrenchSet::new(qdist_primitive_f32::list(list), norm))
     }
 
     /// The same without what takes a pass over the list.
     ///
     /// # Safety
     /// As for `checked`.
-    unsafe fn unchecked(&self) -> Check<WrenchSet<'_, f32, qdist_primitive_f32>> {
+    unsafe fn unchecked(&self) -> Check<WrenchSet<'_, f32>> {
         // SAFETY: the caller's promise.
-        Ok(WrenchSet::without_size(unsafe { array(self.primitives, Some(self.count as usize)) }?, norm(self.norm)?))
+        let list = unsafe { array(self.primitives, Some(self.count as usize)) }?;
+        Ok(WrenchSet::without_size(qdist_primitive_f32::list(list), norm(self.norm)?))
     }
 }
 

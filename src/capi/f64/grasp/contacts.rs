@@ -4,7 +4,7 @@
 //! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
-use super::super::super::generic::{aligned, array, flag, not_null, padded, shared};
+use super::super::super::generic::{aligned, array, flag, shared};
 use super::super::super::grasp::{
     QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
 };
@@ -14,7 +14,6 @@ use crate::grasp::{
     WrenchFrame, default_tolerance,
 };
 use crate::scalar::Vector;
-use nalgebra::SMatrix;
 
 const _: () = assert!(MAX_JOINTS == 8);
 
@@ -123,19 +122,15 @@ impl qdist_wrench_frame_f64 {
     }
 }
 
-impl qdist_primitive_f64 {
-    pub(super) fn new(primitive: &Primitive<f64>) -> Self {
-        let (center, disc) = (primitive.center(), primitive.disc());
-        let mut numbers = [0.0; 18];
-        numbers.iter_mut().zip(disc.iter()).for_each(|(to, x)| *to = *x);
-        let center = padded(center.iter().copied());
-        Self { center, disc: numbers, rounding: primitive.rounding(), empty: u32::from(primitive.is_empty()) }
-    }
+// The library's own struct.
+const _: () = assert!(size_of::<qdist_primitive_f64>() == size_of::<Primitive<f64>>());
+const _: () = assert!(align_of::<qdist_primitive_f64>() == align_of::<Primitive<f64>>());
 
-    /// As it is, unchecked: numbers that are none end a query.
-    pub(super) fn as_it_is(&self) -> Primitive<f64> {
-        let disc = SMatrix::from_iterator(self.disc.iter().copied());
-        Primitive::of_parts(Vector::from(self.center), disc, self.rounding, self.empty != 0)
+impl qdist_primitive_f64 {
+    /// Unchecked: numbers that are none end a query.
+    pub(super) fn list(list: &[Self]) -> &[Primitive<f64>] {
+        // SAFETY: both are `repr(C)` with the same numbers in the same order, of which any bits are legal.
+        unsafe { core::slice::from_raw_parts(list.as_ptr().cast(), list.len()) }
     }
 }
 
@@ -214,7 +209,7 @@ unsafe fn collect(
     for (index, contact) in numbered() {
         if let Ok(made) = primitive(contact, &frame) {
             // SAFETY: the caller's promise: room for `count`.
-            unsafe { primitives.add(index).write(qdist_primitive_f64::new(&made)) };
+            unsafe { primitives.cast::<Primitive<f64>>().add(index).write(made) };
         }
     }
     Ok(())
@@ -263,11 +258,9 @@ pub unsafe extern "C" fn qdist_wrench_subspace_f64(
     let ask = || {
         aligned(dimension)?;
         aligned(basis)?;
-        not_null(primitives)?;
         // SAFETY: what the header asks of the caller.
         let list = unsafe { array(primitives, Some(count as usize)) }?;
-        let found = Subspace::of(list.iter().map(qdist_primitive_f64::as_it_is), tolerance(rank_tolerance));
-        let found = found.map_err(from_contact)?;
+        let found = Subspace::new(qdist_primitive_f64::list(list), tolerance(rank_tolerance)).map_err(from_contact)?;
         let axes = found.basis().iter().flatten().copied();
         for (index, x) in axes.chain(core::iter::repeat(0.0)).take(36).enumerate() {
             // SAFETY: what the header asks of the caller: room for 36 numbers.

@@ -26,11 +26,11 @@
 //! The Hessian of h_Q is taken from differences of its mapping s_Q: zero for polytopes, good to sqrt(roundoff) for others,
 //! which costs Newton's method nothing that counts, since the equations themselves are exact.
 
-use super::default_tolerance;
-use super::minimum::Problem;
-use super::span::Subspace;
+use super::super::default_tolerance;
+use super::super::span::Subspace;
+use super::super::wrench_set::{Norm, WrenchSet};
+use super::search::Problem;
 use super::ties::{Kind, Part, Tie, Ties, tip};
-use super::wrench_set::{Norm, WrenchSet};
 use crate::answer::Answer;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};

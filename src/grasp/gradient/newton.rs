@@ -2,9 +2,9 @@
 
 use heapless::Vec;
 
-use super::minimum::Problem;
+use super::super::wrench_set::Norm;
+use super::search::Problem;
 use super::ties::{Kind, Matrix6, Part, TIES, Ties, Vector6, is_tip, is_weighed};
-use super::wrench_set::Norm;
 use crate::scalar::{Real, norm};
 
 const SIZE: usize = 7 + TIES;

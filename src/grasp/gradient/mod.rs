@@ -23,11 +23,17 @@
 //! The active set changes smoothly with J only where its rank is min(4, q), so that no small change of J raises it, and K
 //! has full row rank. Where Delta is 0 the disc opens like a square root, and nothing but d itself is known.
 
+mod newton;
+mod refine;
+mod search;
+mod ties;
+
+pub use refine::{Kink, Refined, Share};
+
 use super::contact::ContactError;
 use super::frame::WrenchFrame;
 use super::hand::{ActiveForces, HandContact};
 use super::jacobian::MAX_JOINTS;
-use super::refine::Refined;
 use super::svd::{Svd, dot};
 use crate::scalar::{Real, Vector, norm};
 

@@ -1,10 +1,10 @@
 //! The search for a minimum of h_W / h_Q near a direction (module `refine`): guesses of the ties, and their verification.
 
+use super::super::primitive::frobenius;
+use super::super::span::Subspace;
+use super::super::wrench_set::{Norm, WrenchSet};
 use super::newton::{Equations, Iterate};
-use super::primitive::frobenius;
-use super::span::Subspace;
 use super::ties::{Kind, Matrix6, Part, Tie, Ties, Vector6, has_squeeze, is_weighed, squeezed, tip};
-use super::wrench_set::{Norm, WrenchSet};
 use crate::answer::Answer;
 use crate::bounds::Bounds;
 use crate::plan::shoot::descend;

@@ -3,7 +3,7 @@
 use heapless::Vec;
 use nalgebra::SMatrix;
 
-use super::primitive::{Primitive, frobenius};
+use super::super::primitive::{Primitive, frobenius};
 use crate::scalar::{Real, Vector, norm, unit};
 
 /// Equations beside the six of u and the one of d: more than six are never independent.

@@ -1,0 +1,205 @@
+// generated from f64/grasp/forces.rs by `make header`; do not edit
+//! CONTACT FORCES
+//!
+//! The smallest contact forces that resist one given wrench: how a controller distributes a load. Microseconds for a few contacts, no
+//! solver and no memory but the stack, about 4 KB in double. Size is measured in force caps: 1 is the caps themselves.
+
+use super::super::super::generic::{aligned, array, finite, known_size, length, padded, shared};
+use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
+use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
+use super::contacts::{qdist_contact_f32, qdist_wrench_frame_f32};
+use super::wrenches::qdist_wrenches_f32;
+use crate::grasp::{ForceOptions, ForceOutcome, ForceSolver, check_forces};
+use crate::scalar::Vector;
+
+/// When a search for contact forces ends. NULL stands for the defaults.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_force_options_f32 {
+    /// sizeof(qdist_force_options_f32).
+    pub struct_size: u32,
+    /// The most calls of the support function, beside some 20 at the beginning; 0: 1000.
+    pub max_iterations: u32,
+    /// The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
+    pub relative: f32,
+    /// Larger forces are of no interest: the search ends when the least size is known to be above; 0: no limit.
+    pub limit: f32,
+}
+
+/// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and changes nothing else. Plain numbers;
+/// start with `= {0}`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_force_memory_f32 {
+    /// 0 to 6.
+    pub count: u32,
+    /// Coordinate k of direction i is directions[6 * i + k].
+    pub directions: [f32; 36],
+}
+
+/// What is known about the least size of contact forces that resist a wrench.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_forces_f32 {
+    /// sizeof(qdist_forces_f32); set it before the call.
+    pub struct_size: u32,
+    /// What was concluded.
+    pub outcome: qdist_force_outcome,
+    /// All forces that resist the wrench have at least this size: `direction` proves it. FLT_MAX: no forces do.
+    pub lower: f32,
+    /// The shares have at most this size; FLT_MAX: none were found, and all shares are 0.
+    pub upper: f32,
+    /// The unit vector u that proves `lower`: u.w / h_W(u), with w the negative of the external wrench.
+    pub direction: [f32; 6],
+    /// |sum of the shares + external wrench|: how far the shares are from equilibrium. The bracket is that of what they exert.
+    pub residual: f32,
+    /// Calls of the support function, those at the beginning not counted.
+    pub iterations: u32,
+    /// QDIST_CALLBACK_NONFINITE when a primitive is no number; else 0.
+    pub callback_code: i32,
+}
+
+/// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
+/// times position. `force` and `moment` are three numbers, `wrench` six.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_wrench_f32(
+    frame: *const qdist_wrench_frame_f32,
+    force: *const f32,
+    moment: *const f32,
+    wrench: *mut f32,
+) -> qdist_status {
+    let make = || {
+        aligned(wrench)?;
+        // SAFETY: what the header asks of the caller.
+        let (frame, force, moment) =
+            unsafe { (shared(frame)?.checked()?, array(force, Some(3))?, array(moment, Some(3))?) };
+        finite(force)?;
+        finite(moment)?;
+        let three = |list: &[f32]| Vector::<f32, 3>::from_iterator(list.iter().copied());
+        let made = frame.wrench(&three(force), &three(moment));
+        finite(made.as_slice())?;
+        // SAFETY: what the header asks of the caller: room for six numbers.
+        unsafe { wrench.cast::<[f32; 6]>().write(made.into()) };
+        Ok(())
+    };
+    status(make())
+}
+
+/// The smallest contact forces that keep the object in equilibrium with an external wrench.
+///
+/// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
+/// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
+/// negative of the external wrench. qdist_contact_force makes a force of it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_contact_forces_f32(
+    wrenches: *const qdist_wrenches_f32,
+    memory: *mut qdist_force_memory_f32,
+    external: *const f32,
+    options: *const qdist_force_options_f32,
+    shares: *mut f32,
+    result: *mut qdist_forces_f32,
+) -> qdist_status {
+    let solve = || {
+        aligned(shares)?;
+        aligned(result)?;
+        // SAFETY: what the header asks of the caller.
+        let (set, count, external) = unsafe {
+            known_size((&raw const (*result).struct_size).read(), size_of::<qdist_forces_f32>())?;
+            let wrenches = shared(wrenches)?;
+            (wrenches.checked()?, wrenches.count as usize, array(external, Some(6))?)
+        };
+        // SAFETY: what the header asks of the caller.
+        let options = unsafe { convert(options) }?;
+        let mut solver = if memory.is_null() {
+            ForceSolver::new()
+        } else {
+            // SAFETY: what the header asks of the caller.
+            let memory = unsafe { shared(memory.cast_const()) }?;
+            let (known, _) = memory.directions.as_chunks::<6>();
+            finite(&memory.directions)?;
+            let known = known.get(..memory.count as usize).ok_or(QDIST_ERROR_ARGUMENT)?;
+            ForceSolver::knowing(known.iter().map(|&u| Vector::from(u)))
+        };
+        let external = Vector::<f32, 6>::from_iterator(external.iter().copied());
+        // Refused before the shares are touched.
+        check_forces(&external, &options).map_err(from_force)?;
+        // SAFETY: what the header asks of the caller: room for six numbers each, which nothing else refers to. They need no initial value, but
+        // a reference does.
+        let list = unsafe {
+            shares.write_bytes(0, 6 * count);
+            core::slice::from_raw_parts_mut(shares.cast::<Vector<f32, 6>>(), count)
+        };
+        let found = solver.resist(&set, &external, &options, list).map_err(from_force)?;
+        if !memory.is_null() {
+            let mut kept = qdist_force_memory_f32 { count: 0, directions: [0.0; 36] };
+            let (slots, _) = kept.directions.as_chunks_mut::<6>();
+            for (slot, direction) in slots.iter_mut().zip(solver.known()) {
+                *slot = (*direction).into();
+                kept.count += 1;
+            }
+            // SAFETY: checked.
+            unsafe { memory.write(kept) };
+        }
+        let made = qdist_forces_f32 {
+            struct_size: size_of::<qdist_forces_f32>() as u32,
+            outcome: force_outcome(found.outcome),
+            lower: found.lower,
+            upper: found.upper,
+            direction: padded(found.direction.iter().copied()),
+            residual: found.residual,
+            iterations: found.iterations,
+            callback_code: found.failure,
+        };
+        // SAFETY: checked.
+        unsafe { result.write(made) };
+        if found.outcome == ForceOutcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
+    };
+    status(solve())
+}
+
+/// # Safety
+/// If not NULL and aligned, `options` is valid for reads.
+unsafe fn convert(options: *const qdist_force_options_f32) -> Result<ForceOptions<f32>, qdist_status> {
+    let mut made = ForceOptions::default();
+    if options.is_null() {
+        return Ok(made);
+    }
+    // SAFETY: the caller's promise.
+    let options = unsafe { shared(options) }?;
+    known_size(options.struct_size, size_of::<qdist_force_options_f32>())?;
+    let (relative, limit) = (length(options.relative)?, length(options.limit)?);
+    if relative > 0.0 {
+        made.relative = relative;
+    }
+    if limit > 0.0 {
+        made.limit = limit;
+    }
+    if options.max_iterations > 0 {
+        made.iterations = options.max_iterations;
+    }
+    Ok(made)
+}
+
+/// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
+/// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_contact_force_f32(
+    contact: *const qdist_contact_f32,
+    frame: *const qdist_wrench_frame_f32,
+    share: *const f32,
+    force: *mut f32,
+) -> qdist_status {
+    let make = || {
+        aligned(force)?;
+        // SAFETY: what the header asks of the caller.
+        let (contact, frame, share) =
+            unsafe { (shared(contact)?.checked(), shared(frame)?.checked()?, array(share, Some(6))?) };
+        finite(share)?;
+        let share = Vector::<f32, 6>::from_iterator(share.iter().copied());
+        let made = frame.contact_force(&contact.map_err(from_contact)?, &share);
+        // SAFETY: what the header asks of the caller: room for four numbers.
+        unsafe { force.cast::<[f32; 4]>().write(made.into()) };
+        Ok(())
+    };
+    status(make())
+}

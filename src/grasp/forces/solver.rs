@@ -1,0 +1,194 @@
+//! Contact forces that resist a given wrench and are as small as they can be.
+//!
+//! The question is that of ray shooting (paper, end of Section II: Q is a segment). An external wrench acts on the object; the contacts
+//! shall exert w = -(external wrench) (eq. 2), as a sum of *shares* w_i, one wrench per contact, each of forces in its friction cone. The
+//! size of the forces (eq. 4) is the least multiple of W that contains w:
+//!
+//! ```text
+//! least size = min { s >= 0 : w in s W } = max over u of u.w / h_W(u)
+//! ```
+//!
+//! The left side is bounded from above by any shares, the right side from below by any direction: the answer is a bracket. Both
+//! sides come from one linear program over the points of W, solved by column generation ([`program`](super::program), run by
+//! [`search`](super::search)). W may be flat, or have the
+//! origin on its boundary: an object that lies on a palm is not held against every wrench, but it is against its weight.
+//!
+//! * **Scale.** Coordinates are divided by the largest ones of W, by powers of two, exactly: the search does not see the torque scale. The error
+//!   bound of W does: it is one number for forces and moments, and where these differ by orders of magnitude the lower bound pays.
+//! * **Shares.** A point s_W(u) is the sum of one point of each hull({0} ∪ W_i), and only u is stored: at the end the shares are asked for again and
+//!   weighted. They are sums of points of the cones with weights >= 0, so friction holds by construction, and the sum of the
+//!   weights bounds the size.
+//! * **Out of reach.** While w is not in the cone of the points so far, y separates it from them. If the support value along y
+//!   vanishes, too, no forces resist w.
+//! * **Rounding.** The lower bound of the best direction is computed once more at the end with the errors of all
+//!   contributions added to h_W(u) and that of u.w taken away, where w is what the shares exert. How far that is from equilibrium is
+//!   reported, too.
+
+use super::super::usable;
+use super::super::wrench_set::{Contribution, WrenchSet};
+use super::search::Search;
+use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
+use crate::scalar::{Real, Vector, norm, unit};
+use crate::support::Failure;
+use heapless::Vec;
+
+/// Finds the smallest contact forces that resist a wrench; remembers where the last ones came from, for the next tick of a
+/// control loop. 300 bytes in `f64`.
+///
+/// ```
+/// use qdist::Vector;
+/// use qdist::grasp::{Contact, ForceOptions, ForceOutcome, ForceSolver, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+///
+/// // Two soft fingertips, 6 cm apart, hold 0.1 kg; none shall press with more than 10 N.
+/// let rubber = Friction::Soft { mu: 0.5, mus: 0.01 };
+/// let frame = WrenchFrame::new(Vector::zeros(), 0.05)?;
+/// let left = Contact::new(Vector::from([-0.03, 0.0, 0.0]), Vector::from([1.0, 0.0, 0.0]), rubber)?;
+/// let right = Contact::new(Vector::from([0.03, 0.0, 0.0]), Vector::from([-1.0, 0.0, 0.0]), rubber)?;
+/// let contacts = [left.with_force_cap(10.0)?, right.with_force_cap(10.0)?];
+/// let mut memory = [Primitive::empty(); 2];
+/// let w = WrenchSet::new(wrenches(&contacts, &frame, &mut memory)?, Norm::LInf);
+///
+/// let weight: Vector<f64, 6> = frame.wrench(&Vector::from([0.0, 0.0, -0.981]), &Vector::zeros());
+/// let mut shares = [Vector::zeros(); 2];
+/// let forces = ForceSolver::new().resist(&w, &weight, &ForceOptions::default(), &mut shares)?;
+///
+/// assert_eq!(forces.outcome, ForceOutcome::Converged);
+/// assert!(forces.lower <= 0.0981 && 0.0981 <= forces.upper); // of 10 N: friction bears 2 * 0.5 * 0.981 N
+/// let f: Vector<f64, 4> = frame.contact_force(&contacts[0], &shares[0]);
+/// assert!((f.x - 0.981).abs() < 1e-8 && f.y.hypot(f.z) <= 0.5 * f.x * (1.0 + 1e-12) && f.w.abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ForceSolver<T> {
+    /// Directions of the points that the last forces were made of.
+    known: Vec<Vector<T, 6>, 6>,
+}
+
+impl<T: Real> Default for ForceSolver<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real> ForceSolver<T> {
+    /// A solver that knows nothing yet.
+    pub fn new() -> Self {
+        Self { known: Vec::new() }
+    }
+
+    /// A solver that knows the directions of another one, [`known`](Self::known), for those who keep them as numbers; six at most.
+    pub fn knowing(directions: impl Iterator<Item = Vector<T, 6>>) -> Self {
+        Self { known: directions.take(6).collect() }
+    }
+
+    /// The directions whose points the last forces were made of.
+    pub fn known(&self) -> &[Vector<T, 6>] {
+        &self.known
+    }
+
+    /// The smallest contact forces that keep the object in equilibrium with the `external` wrench: their `shares` sum up to -external (eq. 2).
+    ///
+    /// `external` is a wrench in the coordinates of the set ([`WrenchFrame::wrench`](super::WrenchFrame::wrench)): force, and
+    /// moment over the torque scale. `shares[i]` becomes the wrench of contribution i; shares beyond are left alone.
+    /// [`WrenchFrame::contact_force`](super::WrenchFrame::contact_force) makes a contact force of it. How the size is measured is the
+    /// set's [`Norm`](super::Norm). Whatever the outcome, the shares are wrenches that the contacts can exert with size `upper`, and
+    /// `residual` away from equilibrium; or they are zero, when the search ended before there were any.
+    ///
+    /// Forces that were found before make the search shorter, and change nothing else: they may belong to another wrench or set.
+    ///
+    /// Cost: 13 calls of the support function, 6 for what is known, one per iteration, with about 700 operations beside; memory on the
+    /// stack, about 4 KB in `f64`. Convergence is linear: random grasps of 2 to 8 contacts to 1e-9 take 65 iterations in the median, 145
+    /// in one case of ten; two to five soft fingers 30 microseconds on a desktop computer. With a tick before that differed by 1e-3, to 1e-3, 7 iterations in the mean instead of 47. A zero wrench is resisted by zero forces.
+    ///
+    /// # Errors
+    /// [`ForceError`].
+    pub fn resist<C: Contribution<T>>(
+        &mut self,
+        set: &WrenchSet<'_, T, C>,
+        external: &Vector<T, 6>,
+        options: &ForceOptions<T>,
+        shares: &mut [Vector<T, 6>],
+    ) -> Result<Forces<T>, ForceError> {
+        check(external, options)?;
+        let shares = shares.get_mut(..set.contributions().len()).ok_or(ForceError::Room)?;
+        shares.fill(Vector::zeros());
+        let zero = T::zero();
+        let mut forces = Forces {
+            outcome: ForceOutcome::Converged,
+            lower: zero,
+            upper: zero,
+            direction: Vector::zeros(),
+            residual: norm(external),
+            iterations: 0,
+            failure: 0,
+        };
+        if external.iter().all(|&x| x == zero) {
+            return Ok(forces);
+        }
+        forces.upper = T::HUGE;
+        forces.direction = unit(&-external);
+        if let Err(Failure(code)) = self.search(set, options, &mut forces, shares, external) {
+            shares.fill(Vector::zeros());
+            forces = Forces {
+                outcome: ForceOutcome::SupportFailed,
+                upper: T::HUGE,
+                residual: norm(external),
+                failure: code,
+                ..forces
+            };
+        }
+        Ok(forces)
+    }
+
+    fn search<C: Contribution<T>>(
+        &mut self,
+        set: &WrenchSet<'_, T, C>,
+        options: &ForceOptions<T>,
+        forces: &mut Forces<T>,
+        shares: &mut [Vector<T, 6>],
+        external: &Vector<T, 6>,
+    ) -> Result<(), Failure> {
+        let mut search = Search::new(set, -external, *options)?;
+        if search.unit.finite() && search.unit > T::zero() {
+            let ended =
+                search.recall(&self.known).and_then(|()| search.recall(&[-external])).and_then(|()| search.run());
+            forces.iterations = search.iterations;
+            forces.outcome = ended?;
+        } else {
+            forces.outcome = ForceOutcome::Precision; // W is nothing beside w, or w beside W.
+        }
+        self.known.clear();
+        search.program.polish();
+        if !search.program.holds(precision()) || search.program.is_short() {
+            search.program = search.sound.clone();
+        }
+        for (vertex, _) in search.program.parts() {
+            let _ = self.known.push(vertex.witness);
+        }
+        if !search.program.is_short() && search.unit > T::zero() {
+            search.distribute(shares, forces, external)?;
+        }
+        for direction in [search.best.1, search.last, forces.direction] {
+            let lower = search.lower(&direction)?;
+            if lower > forces.lower {
+                (forces.lower, forces.direction) = (lower.at_most(forces.upper), unit(&direction));
+            }
+        }
+        forces.outcome = search.verdict(forces, external);
+        Ok(())
+    }
+}
+
+/// Is everything but the room for the shares as it should be?
+pub(crate) fn check<T: Real>(external: &Vector<T, 6>, options: &ForceOptions<T>) -> Result<(), ForceError> {
+    if !usable(external.iter()) {
+        return Err(ForceError::Wrench);
+    }
+    if !(options.relative >= T::zero() && options.relative.finite()) {
+        return Err(ForceError::Tolerance);
+    }
+    if !(options.limit >= T::zero()) {
+        return Err(ForceError::Limit);
+    }
+    Ok(())
+}
