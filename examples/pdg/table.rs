@@ -40,7 +40,7 @@ fn check(row: &Row) -> String {
         true => format!("true, {:.2} % wide", 100.0 * (1.0 - row.lower / row.upper)),
         false => "true".to_string(),
     };
-    if row.translation.is_some_and(|t| row.upper > t * (1.0 + 1e-6)) {
+    if row.translation.is_some_and(|t| row.upper > t * (1.0 + 1e-3)) {
         return width + ", A TRANSLATION IS BETTER";
     }
     let better = row.known.exact.is_none() && row.ratio().is_some_and(|r| r < 1.0 - 1e-5);
