@@ -9,6 +9,7 @@
 #   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
 #   make bench-dq OUT=dir [QUICK=1]      d_Q in up to six dimensions: table, exponents, pictures, bars
 #   make bench-grasp OUT=dir [QUICK=1]   grasps: what planners and controllers ask, in times and rates
+#   make bench-pdg OUT=dir [QUICK=1]     depths of meshes: quality, times, and FCL's proximity queries on the same poses
 #
 # Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
 # is possible, cbindgen by cargo.
@@ -30,7 +31,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
       else echo "please install: $(1)" >&2; exit 1; fi
 
-.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp compiler clean
+.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp bench-pdg compiler clean
 all: lib
 
 compiler:
@@ -147,6 +148,15 @@ bench-grasp: OUT = out/grasp
 bench-grasp:
 	@echo "measuring grasps; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --features std,grasp --bench grasp -- $(if $(QUICK),--quick) $(OUT)
+
+bench-pdg: OUT = out/pdg
+bench-pdg: compiler
+	@printf '#include <fcl/fcl.h>\nint main() {}\n' | $(CXX) -std=c++17 -fsyntax-only -x c++ $(peer_includes) - 2>/dev/null || \
+	    { echo "installing FCL"; $(call apt,libfcl-dev); }
+	@echo "building FCL's part"
+	@$(CXX) -std=c++17 -O3 -Wall -Wextra $(peer_includes) benches/pdg/fcl.cpp -lfcl -lccd -o $(out)/pdg_fcl
+	@echo "measuring depths of meshes; results go to $(OUT)"
+	@$(CARGO) bench --quiet --locked --features std --bench pdg -- $(if $(QUICK),--quick) --fcl $(abspath $(out))/pdg_fcl $(abspath $(OUT))
 
 test:
 	@scripts/test.sh

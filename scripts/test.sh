@@ -40,7 +40,7 @@ if [ -n "$need" ]; then
     fi
 fi
 
-run rust cargo test --locked --features std,capi,grasp -- --show-output
+run rust cargo test --locked --features std,capi -- --show-output
 run c make --no-print-directory test-c
 run freestanding make --no-print-directory freestanding
 run purity make --no-print-directory purity

@@ -57,7 +57,7 @@
 //!
 //! ```text
 //! capi                          C ABI: include/qdist.h
-//!  grasp                        contacts, friction, hands: wrench sets (feature)
+//!  grasp  mesh                  contacts, friction, hands: wrench sets; triangle meshes: how far out (features)
 //!  depth  tracker  span  batch  prepare   two bodies in space; warm start; flat sets; many sets; vertex graphs of large hulls
 //!   meridian                    two bodies on one axis
 //!    solver                     which plan, and the answer
@@ -78,8 +78,9 @@
 //!
 //! # Features
 //!
-//! * `std`: square roots from the standard library, and `grasp`.
+//! * `std`: square roots from the standard library; `grasp` and `mesh`, which a host has room for.
 //! * `grasp`: contacts, friction and hands as sets.
+//! * `mesh`: triangle meshes, with `std`.
 //! * `capi`: the C functions. `panic-handler`: for the freestanding C library.
 //!
 //! # Sources

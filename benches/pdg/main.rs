@@ -1,0 +1,79 @@
+//! The generalized penetration depth of meshes: quality, time, and the bars.
+//!
+//! ```text
+//! make bench-pdg OUT=dir [QUICK=1]
+//! cargo bench --features std --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
+//! ```
+//!
+//! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's sampling; the
+//! solid test and the distance against FCL's on the same poses. Writes `pdg.csv`, `proximity.csv` and a picture of error against time per metric.
+
+// Modules of tests and of the program are used in part, and their own tests run elsewhere.
+#[allow(dead_code, unused_imports)]
+#[path = "../../examples/pdg/answer.rs"]
+mod answer;
+mod bars;
+#[allow(dead_code, unused_imports)]
+#[path = "../../examples/pdg/bodies.rs"]
+mod bodies;
+#[path = "../../tests/common/mod.rs"]
+mod common;
+#[allow(dead_code, unused_imports)]
+#[path = "../../examples/pdg/input.rs"]
+mod input;
+mod measure;
+#[path = "../../tests/mesh_common/mod.rs"]
+mod mesh_common;
+mod peers;
+mod plot;
+#[allow(dead_code, unused_imports)]
+#[path = "../../examples/pdg/read.rs"]
+mod read;
+mod report;
+mod scenes;
+#[allow(dead_code, unused_imports)]
+#[path = "../../examples/pdg/table.rs"]
+mod table;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let (mut quick, mut fcl, mut folder) = (false, None, PathBuf::from("out/pdg"));
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--quick" => quick = true,
+            "--fcl" => fcl = arguments.next().map(PathBuf::from),
+            // cargo bench says `--bench`.
+            _ if argument.starts_with('-') => {}
+            _ => folder = argument.into(),
+        }
+    }
+    std::fs::create_dir_all(&folder)?;
+    let begin = Instant::now();
+    let scenes = scenes::Scenes::new(quick)?;
+    if !scenes.shared {
+        println!(
+            "../shared/data/meshes is not there: these are meshes made by code, and the best known is the best of this run"
+        );
+    }
+    let (repetitions, enough, rounds) = if quick { (1, 100, 5) } else { (9, 500, 15) };
+    let cold = measure::cold(&scenes, repetitions, Duration::from_millis(enough));
+    std::fs::write(folder.join("pdg.csv"), report::csv(&cold))?;
+    plot::all(&cold, &scenes.benchmarks, &folder)?;
+    let compare = |program: &Path| peers::compare(&scenes, &cold, program, &folder, rounds);
+    let compared = fcl.as_deref().map(compare).transpose()?;
+    if let Some(compared) = &compared {
+        std::fs::write(folder.join("proximity.csv"), report::proximity_csv(compared))?;
+    }
+    println!("\nError against time\n{}", report::curve(&cold));
+    println!("Bars, default effort\n{}", bars::summary(&scenes, &cold, compared.as_deref()));
+    match report::beaten(&cold) {
+        better if better.is_empty() => {}
+        better => println!("better than the best known: {better}"),
+    }
+    println!("{} rows in {} s; results are in {}", cold.len(), begin.elapsed().as_secs(), folder.display());
+    Ok(())
+}

@@ -1,0 +1,139 @@
+//! How little must A move, rotations included, to be free of B? Asks the queries of a file, or poses of two mesh files.
+//!
+//! ```text
+//! cargo run --release --features std --example pdg -- --queries ../shared/data/meshes/queries.json
+//! cargo run --release --features std --example pdg -- pawn.obj cad.obj --pose 1,0,0,0,0.1,0,0.2 --picture out
+//! cargo run --release --features std --example pdg -- --table1
+//! ```
+//!
+//! Prints a table beside the file's references, or with `--csv` one line for every query and metric. Lengths are those of the files; for `sigma` they
+//! are roots of the object norm. `lower` and `upper` bracket the depth, and the pose (x_B = R x_A + t) proves `upper`. All options are in `args.rs`,
+//! what a file may say is in `input.rs`. The exit code is 1 when input is wrong, 2 for the command line.
+
+use std::collections::HashMap;
+use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
+
+use qdist::mesh::{DepthOptions, DepthSolver};
+
+mod answer;
+mod args;
+mod bar;
+mod bodies;
+mod input;
+mod picture;
+mod read;
+mod table;
+mod table1;
+mod words;
+
+use answer::Row;
+use args::{Request, Source};
+use bar::Bar;
+use bodies::Bodies;
+use input::Query;
+
+/// What is asked: the queries of a file, or of the command line.
+fn queries(source: &Source) -> Result<Vec<Query>, String> {
+    match source {
+        Source::File(file) => input::queries(file),
+        Source::Table1(file) => table1::select(input::queries(file)?),
+        Source::Pair([a, b], poses) => {
+            let query = |(i, pose)| Query::new(format!("pose{i}"), a.clone(), b.clone(), pose);
+            Ok(poses.iter().copied().enumerate().map(query).collect())
+        }
+    }
+}
+
+fn run(request: &Request) -> Result<(), String> {
+    let queries = queries(&request.source)?;
+    let bar = Bar::new(queries.len() * request.kinds.len());
+    let bodies = match &request.source {
+        Source::File(file) | Source::Table1(file) => Bodies::of(&queries, |file| bar.say(&file.display().to_string()))
+            .map_err(|trouble| format!("{}: {trouble}", file.display()))?,
+        Source::Pair(files, _) => {
+            let mut bodies = Bodies::default();
+            files.iter().try_for_each(|file| bodies.read(file))?;
+            bodies
+        }
+    };
+    for (file, model) in bodies.iter() {
+        let report = words::report(file, model);
+        if request.csv || !matches!(request.source, Source::Pair(..)) {
+            // Only what is wrong, and not between the answers.
+            if !model.mesh().report().is_clean() {
+                eprint!("{report}");
+            }
+        } else {
+            print!("{report}");
+        }
+    }
+    answer_all(request, &queries, &bodies, &bar).map_err(|e| e.to_string())
+}
+
+fn answer_all(
+    request: &Request,
+    queries: &[Query],
+    bodies: &Bodies,
+    bar: &Bar,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let table1 = matches!(request.source, Source::Table1(_));
+    let mut out = BufWriter::new(io::stdout().lock());
+    let readable = !request.csv && !table1 && !queries.is_empty();
+    if request.csv {
+        writeln!(out, "{}", answer::HEADER)?;
+    } else if readable {
+        table::head(&mut out)?;
+    }
+    if let Some(folder) = &request.picture {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    let options = DepthOptions { effort: request.effort, seed: request.seed, ..DepthOptions::default() };
+    let mut solvers: HashMap<_, DepthSolver> = HashMap::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for query in queries {
+        let solver = solvers
+            .entry((&query.a, &query.b))
+            .or_insert_with(|| DepthSolver::new(bodies.get(&query.a), bodies.get(&query.b)));
+        for &kind in &request.kinds {
+            let name = format!("{} {}", query.id, kind.name());
+            let row = bar.during(rows.len(), &name, |watch| answer::ask(solver, query, kind, &options, watch));
+            if let Some(folder) = &request.picture {
+                picture::draw(solver, query, &row, &options, folder)?;
+            }
+            if request.csv {
+                row.write(&mut out)?;
+            } else if readable {
+                table::line(&mut out, &row)?;
+            }
+            rows.push(row);
+        }
+        // Who waits sees what there is.
+        bar.aside(|| out.flush())?;
+    }
+    bar.finish();
+    if table1 && !request.csv {
+        table1::write(&mut out, queries, bodies, &rows)?;
+    } else if readable && queries.len() > 1 {
+        table::summary(&mut out, &rows)?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+fn main() -> ExitCode {
+    let request = match Request::parse(std::env::args().skip(1)) {
+        Ok(request) => request,
+        Err(trouble) => {
+            eprintln!("{trouble}\n{}", args::USAGE);
+            return ExitCode::from(2);
+        }
+    };
+    match run(&request) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(trouble) => {
+            eprintln!("{trouble}");
+            ExitCode::FAILURE
+        }
+    }
+}
