@@ -56,7 +56,7 @@
 //! Arrows point down; nobody knows who is above.
 //!
 //! ```text
-//! capi                          C ABI: include/qdist.h
+//! capi                          C ABI: include/qdist*.h
 //!  grasp  mesh                  contacts, friction, hands: wrench sets; triangle meshes: how far out (features)
 //!  depth  tracker  span  batch  prepare   two bodies in space; warm start; flat sets; many sets; vertex graphs of large hulls
 //!   meridian                    two bodies on one axis
