@@ -63,6 +63,8 @@ pub const QDIST_ERROR_FRAME: qdist_status = 21;
 pub const QDIST_ERROR_TOLERANCE: qdist_status = 22;
 /// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 pub const QDIST_ERROR_TORQUE_LIMIT: qdist_status = 23;
+/// The memory does not hold a finger of this scalar type.
+pub const QDIST_ERROR_FINGER: qdist_status = 24;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -112,7 +114,7 @@ pub const QDIST_PLAN_WARM: qdist_plan = 4;
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-/// number. Callbacks must not return it, nor INT32_MIN + 1.
+/// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
 pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 
 const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
@@ -145,6 +147,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_FRAME => c"wrench frame out of range",
         QDIST_ERROR_TOLERANCE => c"rank tolerance out of range",
         QDIST_ERROR_TORQUE_LIMIT => c"torque limits out of range",
+        QDIST_ERROR_FINGER => c"not a finger",
         _ => c"unknown status",
     }
     .as_ptr()
