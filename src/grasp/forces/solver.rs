@@ -209,8 +209,9 @@ impl<T: Real> ForceSolver<T> {
             search.distribute(shares, forces, external)?;
         }
         if forces.upper < T::HUGE {
-            let weights = search.program.parts().map(|(_, weight)| (weight * search.unit).at_least(T::zero()));
-            self.weights.extend(weights.take(self.known.len()));
+            for (_, weight) in search.program.parts() {
+                let _ = self.weights.push((weight * search.unit).at_least(T::zero()));
+            }
         }
         for direction in [search.best.1, search.last, forces.direction] {
             let lower = search.lower(&direction)?;

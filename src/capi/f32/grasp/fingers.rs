@@ -4,8 +4,8 @@
 //! A finger as a whole: up to four contacts that share their joints, whose torques have limits. What it can exert is the sum of its
 //! contacts' wrenches over all contact forces (f_1, ..., f_k) within friction cones, force caps and |sum of J_i^T f_i| <= limits, joint by
 //! joint; with QDIST_FORCE_MODEL_ACTIVE only those that the joints make at all contacts together. Its support function is a small convex
-//! program, each time with a proof: 0.1 microseconds where the limits do not count, else 10 for one contact to 130 for four. Without limits
-//! a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
+//! program, each time with a proof: 0.1 microseconds where the limits do not count, else 10 for one contact to 130 for four, with up to
+//! 43 KB of stack in double. Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
 
 use super::super::super::generic::{aligned, array, finite, shared};
 use super::super::super::grasp::{force_model, from_grasp, norm as checked_norm, qdist_force_model, qdist_norm};
@@ -117,7 +117,7 @@ impl qdist_finger_wrenches_f32 {
 /// qdist_active_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
 /// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
 ///
-/// 5 microseconds where no limit counts; up to 5 milliseconds, with 40 KB of stack in double, where there are limits and several contacts.
+/// 5 microseconds where no limit counts; up to 5 milliseconds, with 80 KB of stack in double, where there are limits and several contacts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_finger_init_f32(
     finger: *mut qdist_finger_f32,
@@ -267,6 +267,8 @@ fn in_units(force: &Vector<f32, 4>, torque_scale: f32) -> [f32; 4] {
 ///
 /// forces: NULL; or room for 16 * count numbers: forces[16 * i + 4 * k] and the three after it become the force of contact k of finger i, as
 /// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
+///
+/// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_finger_contact_forces_f32(
     wrenches: *const qdist_finger_wrenches_f32,
