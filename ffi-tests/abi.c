@@ -1,6 +1,6 @@
 /* The binary interface: the size macros agree with the library, structs look as a C compiler says they do, versions match. With
  * an argument, prints the sizes instead. */
-#include "qdist.h"
+#include "qdist_grasp.h"
 #include "test.h"
 
 #include <stddef.h>
@@ -83,6 +83,15 @@ static void layout(void) {
     CHECK(sizeof words >= QDIST_WORKSPACE_BYTES_F64(6, 7, 12) && sizeof graph == 2 * 60);
 }
 
+static void grasp_layout(void) {
+    CHECK(offsetof(qdist_finger_f64, words) == 16 && sizeof(qdist_finger_f64) == 16 + 577 * 8);
+    CHECK(offsetof(qdist_finger_f32, words) == 12 && sizeof(qdist_finger_f32) == 12 + 577 * 4);
+    CHECK(sizeof(qdist_finger_wrenches_f64) == sizeof(void *) + 8 && sizeof(qdist_pyramid_wrenches_f32) == sizeof(void *) + 8);
+    CHECK(sizeof(qdist_layout_f64) == 16 && sizeof(qdist_layout_f32) == 12);
+    CHECK(sizeof(qdist_preset_f64) == 4 * 8 + 16 + 8 && sizeof(qdist_preset_f32) == 4 * 4 + 12 + 8);
+    CHECK(sizeof(qdist_pyramid_f64) == 4 * 8 || sizeof(void *) != 8);
+}
+
 static void version(void) {
     char text[64];
     CHECK(qdist_version() == QDIST_VERSION);
@@ -111,6 +120,7 @@ int main(int argc, char **argv) {
     sizes();
     bounds();
     layout();
+    grasp_layout();
     version();
     return finish("abi");
 }

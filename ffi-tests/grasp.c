@@ -1,5 +1,5 @@
-/* Grasps from C, in both scalar types: Table I (a1)-(a5) of Zheng & Yamane, force closure, the best of several, bad arguments. The
- * file includes itself once for each. */
+/* Grasps from C, in both scalar types: Table I (a1)-(a5) of Zheng & Yamane, force closure, the best of several, contact forces, gradients,
+ * fingers with torque limits, linearised cones, bad arguments. The file includes itself once for each. */
 #ifndef REAL
 
 #include "qdist_grasp.h"
@@ -238,6 +238,387 @@ static void Q(gradients)(qdist_solver *solver) {
     CHECK(refined.kink != QDIST_KINK_NONE && gradients[0].known == 0);
 }
 
+/* A link of one joint at the origin about z, that touches at x and presses along y. */
+static Q(qdist_contact) Q(on_link)(double x) {
+    Q(qdist_contact) c;
+    memset(&c, 0, sizeof c);
+    c.position[0] = (REAL)x;
+    c.normal[1] = 1;
+    c.friction = QDIST_FRICTIONLESS;
+    c.force_cap = 50;
+    c.actuated = 1, c.joints = 1;
+    c.jacobian[0] = (REAL)x;
+    return c;
+}
+
+/* d of a set for the unit ball. */
+static Q(qdist_result) Q(depth)(qdist_solver *solver, const Q(qdist_set) *set) {
+    Q(qdist_options) options;
+    Q(qdist_result) result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    options.relative = (REAL)(10 * WIDTH);
+    CHECK(Q(qdist_solve6)(solver, set, NULL, &options, &result) == QDIST_OK && result.lower <= result.upper);
+    return result;
+}
+
+/* Without limits a finger is its contacts' primitives; limits tighten; a load is held within them. */
+static void Q(fingers)(qdist_solver *solver) {
+    const Q(qdist_contact) contacts[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
+    const Q(qdist_contact) link[2] = {Q(on_link)(1), Q(on_link)(2)};
+    const REAL limits[4] = {10, 3, 1, (REAL)0.25};
+    const REAL torque[1] = {1}, up[6] = {0, 1, 0, 0, 0, 0}, load[6] = {0, (REAL)-0.5, 0, 0, 0, (REAL)-0.75};
+    const Q(qdist_wrench_frame) scaled = {{0, 0, 0}, 2};
+    Q(qdist_primitive) primitives[2];
+    Q(qdist_finger) fingers[2], copy[2];
+    const Q(qdist_wrenches) w = {primitives, 2, QDIST_LINF};
+    Q(qdist_finger_wrenches) f = {fingers, 2, QDIST_LINF};
+    Q(qdist_force_memory) memory;
+    Q(qdist_force_options) options;
+    Q(qdist_set) set;
+    Q(qdist_result) exact, before, now;
+    Q(qdist_forces) result;
+    uint32_t i, k, step, which = 9;
+    REAL forces[32], shares[12];
+    CHECK(Q(qdist_passive_primitives)(contacts, 2, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
+    exact = Q(depth)(solver, &set);
+    for (i = 0; i < 2; ++i)
+        CHECK(Q(qdist_finger_init)(&fingers[i], &contacts[i], 1, NULL, QDIST_FORCE_MODEL_PASSIVE, &Q(frame), 0, &which)
+                  == QDIST_OK
+              && which == 9 && fingers[i].contacts == 1);
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &f) == QDIST_OK);
+    before = Q(depth)(solver, &set);
+    CHECK(exact.lower > 0 && before.lower <= exact.upper && exact.lower <= before.upper);
+    memcpy(copy, fingers, sizeof copy); /* plain bytes */
+    f.fingers = copy;
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &f) == QDIST_OK);
+    now = Q(depth)(solver, &set);
+    CHECK(now.lower == before.lower && now.upper == before.upper);
+    f.fingers = fingers;
+    for (step = 0; step < 4; ++step) {
+        const REAL both[2] = {limits[step], (REAL)INFINITY};
+        for (i = 0; i < 2; ++i)
+            CHECK(Q(qdist_finger_init)(&fingers[i], &contacts[i], 1, both, QDIST_FORCE_MODEL_PASSIVE, &Q(frame), 0, NULL)
+                  == QDIST_OK);
+        CHECK(Q(qdist_set_finger_wrenches)(&set, &f) == QDIST_OK);
+        now = Q(depth)(solver, &set);
+        CHECK(now.lower > 0 && now.lower <= before.upper);
+        /* 10 is more than the joint sees, 0.25 is not. */
+        CHECK(step != 0 || exact.lower <= now.upper);
+        CHECK(step != 3 || now.upper < exact.lower);
+        before = now;
+    }
+
+    /* 1 N m makes 1 N at the arm 1, or 0.5 N at the arm 2; the joint alone moves both. */
+    CHECK(Q(qdist_finger_init)(&fingers[0], link, 2, torque, QDIST_FORCE_MODEL_PASSIVE, &scaled, 0, NULL) == QDIST_OK);
+    CHECK(Q(qdist_finger_forces)(&fingers[0], up, forces) == QDIST_OK);
+    CHECK(fabs(forces[0] - 1) < WIDTH && fabs(forces[4]) < WIDTH && forces[1] == 0 && forces[7] == 0);
+    CHECK(Q(qdist_finger_init)(&fingers[1], link, 2, torque, QDIST_FORCE_MODEL_ACTIVE, &scaled, 0, NULL) == QDIST_OK);
+    CHECK(Q(qdist_finger_forces)(&fingers[1], up, forces) == QDIST_OK && fingers[1].contacts == 2);
+    CHECK(fabs(forces[0] - 0.2) < WIDTH && fabs(forces[4] - 0.4) < WIDTH);
+
+    /* The load asks for 0.5 N along y and a moment of 2 * 0.75 N m about z, which is more torque than the joint has: a + b = 0.5 and
+     * a + 2 b = 1.5 have no a >= 0. Half of the moment: a = 0.25, b = 0.25, a torque of 0.75. */
+    memset(&memory, 0, sizeof memory);
+    result.struct_size = sizeof result;
+    f.count = 1;
+    CHECK(Q(qdist_finger_contact_forces)(&f, &memory, load, NULL, shares, forces, &result) == QDIST_OK);
+    /* In float the error bound of fingers leaves it at a lower bound that is absurd. */
+    CHECK(result.outcome == (sizeof(REAL) == 8 ? QDIST_FORCES_NOT_RESISTIBLE : QDIST_FORCES_PRECISION));
+    CHECK(result.lower > 50 && result.upper > 1e38 && forces[0] == 0 && shares[1] == 0);
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.relative = (REAL)(sizeof(REAL) == 8 ? 0 : 1e-2);
+    for (k = 0; k < 2; ++k) {
+        const REAL half[6] = {0, (REAL)-0.5, 0, 0, 0, (REAL)-0.375};
+        CHECK(Q(qdist_finger_contact_forces)(&f, k ? &memory : NULL, half, &options, shares, forces, &result) == QDIST_OK);
+        CHECK(result.outcome == QDIST_FORCES_CONVERGED);
+        CHECK(result.lower <= 0.75 * (1 + 1e-6) && 0.75 * (1 - 1e-6) <= result.upper);
+        CHECK(fabs(forces[0] - 0.25) < 5 * WIDTH && fabs(forces[4] - 0.25) < 5 * WIDTH && forces[8] == 0 && forces[12] == 0);
+        CHECK(fabs(shares[1] - 0.5) < 5 * WIDTH && fabs(shares[5] - 0.375) < 5 * WIDTH);
+        CHECK(forces[0] + 2 * forces[4] <= result.upper * (1 + WIDTH)); /* the torque limit of 1 */
+    }
+    CHECK(Q(qdist_finger_contact_forces)(&f, NULL, load, NULL, shares, NULL, &result) == QDIST_OK);
+
+    /* The spin moment is in units of force times position, whatever the torque scale. */
+    for (k = 0; k < 2; ++k) {
+        const REAL spin[6] = {0, 0, 0, 1, 0, 0};
+        CHECK(Q(qdist_finger_init)(&fingers[0], &contacts[0], 1, NULL, QDIST_FORCE_MODEL_PASSIVE, k ? &scaled : &Q(frame), 0,
+                                   NULL)
+              == QDIST_OK);
+        CHECK(Q(qdist_finger_forces)(&fingers[0], spin, forces) == QDIST_OK && fabs(forces[3] - 0.1) < 1e-6);
+    }
+}
+
+static void Q(finger_errors)(void) {
+    const Q(qdist_contact) good[2] = {Q(on_link)(1), Q(on_link)(2)};
+    const REAL one[1] = {1}, negative[1] = {-1}, none[1] = {(REAL)NAN};
+    const REAL up[6] = {0, 1, 0, 0, 0, 0}, bad_direction[6] = {0, (REAL)NAN, 0, 0, 0, 0};
+    REAL forces[16], shares[6];
+    Q(qdist_contact) bad[5];
+    Q(qdist_finger) finger, before;
+    Q(qdist_finger_wrenches) w = {&finger, 1, QDIST_LINF};
+    Q(qdist_wrench_frame) frame = Q(frame);
+    Q(qdist_forces) result;
+    Q(qdist_set) set, untouched;
+    uint32_t which, k;
+    memset(&finger, 0, sizeof finger);
+    memset(&set, 0, sizeof set);
+    memcpy(&before, &finger, sizeof before);
+    memcpy(&untouched, &set, sizeof set);
+#define INIT(count, limits, model, tolerance)                                                                             \
+    (which = 9, Q(qdist_finger_init)(&finger, bad, count, limits, model, &frame, tolerance, &which))
+#define REFUSED(change, call, code, index)                                                                               \
+    for (k = 0; k < 5; ++k) bad[k] = good[k % 2];                                                                       \
+    change;                                                                                                             \
+    CHECK(call == code && which == index && memcmp(&finger, &before, sizeof finger) == 0)
+    REFUSED((void)0, INIT(2, negative, 0, 0), QDIST_ERROR_TORQUE_LIMIT, 0);
+    REFUSED((void)0, INIT(2, none, 0, 0), QDIST_ERROR_TORQUE_LIMIT, 0);
+    REFUSED((void)0, INIT(5, one, 0, 0), QDIST_ERROR_CAPACITY, 4);
+    REFUSED((void)0, INIT(0, one, 0, 0), QDIST_ERROR_ARGUMENT, 9);
+    REFUSED((void)0, INIT(2, one, 2, 0), QDIST_ERROR_ARGUMENT, 9);
+    REFUSED((void)0, INIT(2, one, 1, (REAL)0.6), QDIST_ERROR_TOLERANCE, 0);
+    REFUSED(bad[1].joints = 2, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_JACOBIAN, 1);
+    REFUSED(bad[1].actuated = 0, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_JACOBIAN, 1);
+    REFUSED(bad[1].jacobian[0] = (REAL)NAN, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_JACOBIAN, 1);
+    REFUSED(bad[1].position[0] = (REAL)NAN, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_POSITION, 1);
+    REFUSED(bad[1].normal[0] = 1, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_NORMAL, 1);
+    REFUSED(bad[0].force_cap = -1, INIT(2, one, 0, 0), QDIST_ERROR_CONTACT_CAP, 0);
+    REFUSED(frame.torque_scale = 0, INIT(2, one, 0, 0), QDIST_ERROR_FRAME, 9);
+    frame.torque_scale = 1;
+    {
+        /* The second joint's limit is the one that is wrong. */
+        const REAL second[2] = {1, -2};
+        REFUSED((bad[0].joints = 2), INIT(1, second, 0, 0), QDIST_ERROR_TORQUE_LIMIT, 1);
+    }
+#undef REFUSED
+#undef INIT
+    CHECK(Q(qdist_finger_init)(NULL, good, 2, one, 0, &frame, 0, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_finger_init)(&finger, NULL, 2, one, 0, &frame, 0, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_finger_init)(&finger, good, 2, one, 0, NULL, 0, NULL) == QDIST_ERROR_NULL);
+    /* What is no finger is refused everywhere. */
+    result.struct_size = sizeof result;
+    forces[0] = 7;
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &w) == QDIST_ERROR_FINGER && memcmp(&set, &untouched, sizeof set) == 0);
+    CHECK(Q(qdist_finger_wrenches_support)(&w, up, forces) == QDIST_ERROR_FINGER);
+    CHECK(Q(qdist_finger_forces)(&finger, up, forces) == QDIST_ERROR_FINGER);
+    CHECK(Q(qdist_finger_contact_forces)(&w, NULL, up, NULL, shares, forces, &result) == QDIST_ERROR_FINGER);
+    CHECK(forces[0] == 7 && strcmp(qdist_status_string(QDIST_ERROR_FINGER), "not a finger") == 0);
+    /* The palm needs no limits; NULL is no limit. */
+    bad[0] = good[0], bad[0].actuated = 0;
+    CHECK(Q(qdist_finger_init)(&finger, bad, 1, negative, QDIST_FORCE_MODEL_ACTIVE, &frame, 0, NULL) == QDIST_OK);
+    CHECK(Q(qdist_finger_forces)(&finger, up, forces) == QDIST_OK && fabs(forces[0] - 50) < 1e-4);
+    forces[0] = 7;
+    CHECK(Q(qdist_finger_forces)(&finger, bad_direction, forces) == QDIST_ERROR_NONFINITE);
+    CHECK(Q(qdist_finger_forces)(&finger, NULL, forces) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_finger_forces)(&finger, up, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_finger_forces)(NULL, up, forces) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_finger_contact_forces)(&w, NULL, bad_direction, NULL, shares, forces, &result) == QDIST_ERROR_NONFINITE);
+    CHECK(Q(qdist_finger_contact_forces)(&w, NULL, up, NULL, NULL, forces, &result) == QDIST_ERROR_NULL);
+    CHECK(forces[0] == 7);
+    w.norm = 2;
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &w) == QDIST_ERROR_ARGUMENT);
+    w.norm = QDIST_L1, w.count = 0;
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &w) == QDIST_ERROR_ARGUMENT);
+    w.count = 1, w.fingers = NULL;
+    CHECK(Q(qdist_set_finger_wrenches)(&set, &w) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_set_finger_wrenches)(&set, NULL) == QDIST_ERROR_NULL);
+}
+
+/* t such that t * end is on the boundary of the pyramids' set. */
+static Q(qdist_result) Q(shoot)(qdist_solver *solver, const Q(qdist_set) *set, double y, double z) {
+    Q(qdist_segment_gauge) segment = {{0, (REAL)y, (REAL)z, 0, 0, 0}, 6};
+    Q(qdist_gauge) q;
+    Q(qdist_result) result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_gauge_segment)(&q, &segment) == QDIST_OK);
+    CHECK(Q(qdist_solve6)(solver, set, &q, NULL, &result) == QDIST_OK);
+    return result;
+}
+
+#define NEAR(result, x) ((result).lower <= (x) * (1 + 1e-5) && (x) * (1 - 1e-5) <= (result).upper)
+#define NARROW(result, x) (NEAR(result, x) && (result).upper - (result).lower < 2e-2 * (x))
+
+static void Q(linearised)(qdist_solver *solver) {
+    static REAL edges[6 * 40];
+    const double diagonal = 0.7071067811865476;
+    const REAL origin[3] = {0, 0, 0};
+    Q(qdist_contact) contacts[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
+    Q(qdist_primitive) primitives[2];
+    Q(qdist_pyramid) pyramids[2];
+    const Q(qdist_wrenches) w = {primitives, 2, QDIST_L1};
+    Q(qdist_pyramid_wrenches) p = {pyramids, 2, QDIST_LINF};
+    Q(qdist_layout) layout = {QDIST_LAYOUT_INSCRIBED, 4, 0};
+    Q(qdist_segment_gauge) mean;
+    Q(qdist_preset) preset;
+    Q(qdist_result) exact, inside, outside;
+    Q(qdist_gauge) q;
+    Q(qdist_set) set;
+    uint32_t count, which = 9, i;
+
+    /* How many edges. */
+    CHECK(Q(qdist_pyramid_edges)(&layout, QDIST_HARD, &count) == QDIST_OK && count == 4);
+    CHECK(Q(qdist_pyramid_edges)(&layout, QDIST_SOFT, &count) == QDIST_OK && count == 6);
+    layout.kind = QDIST_LAYOUT_GRASPIT, layout.length = 1;
+    CHECK(Q(qdist_pyramid_edges)(&layout, QDIST_FRICTIONLESS, &count) == QDIST_OK && count == 8);
+    CHECK(Q(qdist_pyramid_edges)(&layout, QDIST_SOFT, &count) == QDIST_OK && count == 20);
+    layout.kind = QDIST_LAYOUT_DEX_NET;
+    CHECK(Q(qdist_pyramid_edges)(&layout, QDIST_SOFT, &count) == QDIST_OK && count == 6);
+
+    /* Two soft contacts: the exact d is between those of the pyramids in the cones and around them. */
+    CHECK(Q(qdist_passive_primitives)(contacts, 2, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
+    exact = Q(depth)(solver, &set);
+    p.norm = QDIST_L1;
+    layout.kind = QDIST_LAYOUT_INSCRIBED, layout.sides = 8;
+    CHECK(Q(qdist_pyramids)(contacts, 2, &Q(frame), &layout, edges, 20, pyramids, &which) == QDIST_OK && which == 9);
+    CHECK(pyramids[0].count == 10 && pyramids[0].edges == edges && pyramids[1].edges == edges + 60);
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK);
+    inside = Q(depth)(solver, &set);
+    layout.kind = QDIST_LAYOUT_CIRCUMSCRIBED;
+    CHECK(Q(qdist_pyramids)(contacts, 2, &Q(frame), &layout, edges, 40, pyramids, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK);
+    outside = Q(depth)(solver, &set);
+    CHECK(inside.lower > 0 && inside.lower <= exact.upper && exact.lower <= outside.upper);
+    CHECK(inside.upper < outside.lower);
+
+    /* Four sides with the first edge along y: without spin, a square of friction in the circle, and one around it, which a double pyramid
+     * around the sphere has sqrt(3) times as large. */
+    p.norm = QDIST_LINF;
+    layout.sides = 4;
+    layout.kind = QDIST_LAYOUT_INSCRIBED;
+    CHECK(Q(qdist_pyramids)(contacts, 2, &Q(frame), &layout, edges, 12, pyramids, NULL) == QDIST_OK);
+    CHECK(edges[0] == 1 && edges[1] == (REAL)0.5 && fabs(edges[2]) < 1e-7); /* normal and o */
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK);
+    inside = Q(shoot)(solver, &set, 1, 0), outside = Q(shoot)(solver, &set, diagonal, diagonal);
+    CHECK(NARROW(inside, 1) && NARROW(outside, diagonal));
+    layout.kind = QDIST_LAYOUT_CIRCUMSCRIBED;
+    CHECK(Q(qdist_pyramids)(contacts, 2, &Q(frame), &layout, edges, 12, pyramids, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK);
+    inside = Q(shoot)(solver, &set, 1, 0), outside = Q(shoot)(solver, &set, diagonal, diagonal);
+    CHECK(NARROW(inside, sqrt(3)) && NARROW(outside, sqrt(3) * diagonal));
+
+    /* What the tools do. */
+    CHECK(Q(qdist_preset_graspit)(&preset, origin, 2, (REAL)0.001, QDIST_LINF) == QDIST_OK);
+    CHECK(preset.frame.torque_scale == 2 && preset.norm == QDIST_LINF && preset.layout.kind == QDIST_LAYOUT_GRASPIT);
+    CHECK(Q(qdist_preset_contact)(&preset, &contacts[0]) == QDIST_OK && contacts[0].tangents[1] == -1); /* e_x x e_z */
+    CHECK(contacts[0].joints == 2 && contacts[0].mu == (REAL)0.5 && contacts[0].force_cap == 1);
+    CHECK(Q(qdist_preset_dex_net)(&preset, origin, 3, 8, (REAL)0.005) == QDIST_OK);
+    CHECK(preset.frame.torque_scale == 3 && preset.norm == QDIST_L1 && preset.layout.sides == 8);
+    contacts[0].normal[0] = 0, contacts[0].normal[2] = 1;
+    CHECK(Q(qdist_preset_contact)(&preset, &contacts[0]) == QDIST_OK);
+    CHECK(contacts[0].tangents[0] == 1 && contacts[0].tangents[4] == 1);
+    CHECK(Q(qdist_preset_frogger)(&preset, 4, 4) == QDIST_OK);
+    CHECK(preset.frame.torque_scale == (REAL)0.5 && preset.norm == QDIST_L1 && preset.layout.kind == QDIST_LAYOUT_INSCRIBED);
+    CHECK(Q(qdist_preset_contact)(&preset, &contacts[0]) == QDIST_OK);
+    CHECK(fabs(contacts[0].force_cap - 1 / sqrt(1.25)) < 1e-6);
+    CHECK(fabs(contacts[0].tangents[1] - 2.3 / sqrt(1.2 * 1.2 + 2.3 * 2.3)) < 1e-6);
+
+    /* FRoGGeR's min-weight of two opposed contacts, one twice as strong: weights of 1/3 and 2/3 in all. */
+    contacts[0] = Q(fingertip)(-1, 0.5, 0.1), contacts[1] = Q(fingertip)(1, 0.5, 0.1);
+    contacts[0].force_cap = 2;
+    CHECK(Q(qdist_pyramids)(contacts, 2, &preset.frame, &preset.layout, edges, 12, pyramids, NULL) == QDIST_OK);
+    CHECK(Q(qdist_opposed_mean)(pyramids, 2, &mean) == QDIST_OK && mean.dimension == 6 && fabs(mean.end[0] + 0.5) < 1e-6);
+    for (i = 1; i < 6; ++i) mean.end[i] = 0; /* but for rounding they are */
+    p.norm = preset.norm;
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK && Q(qdist_gauge_segment)(&q, &mean) == QDIST_OK);
+    inside.struct_size = sizeof inside;
+    CHECK(Q(qdist_solve6)(solver, &set, &q, NULL, &inside) == QDIST_OK);
+    CHECK(NARROW(inside, 2) && fabs(Q(qdist_min_weight)(inside.upper) - 2.0 / 3) < 1e-2 && Q(qdist_min_weight)(1) == (REAL)0.5);
+    edges[0] = edges[1] = edges[2] = edges[3] = edges[4] = edges[5] = 0;
+    pyramids[0].count = 1;
+    CHECK(Q(qdist_opposed_mean)(pyramids, 1, &mean) == QDIST_ERROR_ARGUMENT);
+}
+
+static void Q(linearised_errors)(void) {
+    const Q(qdist_contact) good[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
+    const REAL none = (REAL)NAN, origin[3] = {0, 0, 0}, nowhere[3] = {0, (REAL)NAN, 0};
+    REAL edges[6 * 20], point[6], u[6] = {1, 0, 0, 0, 0, 0};
+    Q(qdist_contact) bad[2];
+    Q(qdist_pyramid) pyramids[2], before[2];
+    Q(qdist_pyramid_wrenches) w = {pyramids, 2, QDIST_L1};
+    Q(qdist_layout) layout;
+    Q(qdist_wrench_frame) frame = Q(frame);
+    Q(qdist_preset) preset, kept;
+    Q(qdist_segment_gauge) mean;
+    Q(qdist_set) set;
+    uint32_t which, count = 77;
+    memset(pyramids, 0, sizeof pyramids);
+    memcpy(before, pyramids, sizeof before);
+    memset(&preset, 0, sizeof preset);
+    memcpy(&kept, &preset, sizeof kept);
+    edges[0] = 7;
+#define REFUSED(change, capacity, code, index)                                                                          \
+    memcpy(bad, good, sizeof bad);                                                                                      \
+    layout.kind = QDIST_LAYOUT_INSCRIBED, layout.sides = 8, layout.length = 0;                                          \
+    frame.torque_scale = 1;                                                                                             \
+    which = 9;                                                                                                          \
+    change;                                                                                                             \
+    CHECK(Q(qdist_pyramids)(bad, 2, &frame, &layout, edges, capacity, pyramids, &which) == code && which == index);     \
+    CHECK(memcmp(pyramids, before, sizeof before) == 0 && edges[0] == 7)
+    REFUSED(layout.kind = 4, 20, QDIST_ERROR_ARGUMENT, 9);
+    REFUSED(layout.sides = 2, 20, QDIST_ERROR_ARGUMENT, 9);
+    REFUSED(layout.kind = QDIST_LAYOUT_GRASPIT, 20, QDIST_ERROR_FRAME, 9);
+    REFUSED((layout.kind = QDIST_LAYOUT_DEX_NET, layout.length = -1), 20, QDIST_ERROR_ARGUMENT, 9);
+    REFUSED((layout.kind = QDIST_LAYOUT_DEX_NET, layout.length = none), 20, QDIST_ERROR_NONFINITE, 9);
+    REFUSED((void)0, 19, QDIST_ERROR_CAPACITY, 1);
+    REFUSED((void)0, 0, QDIST_ERROR_CAPACITY, 0);
+    REFUSED(layout.sides = UINT32_MAX, 20, QDIST_ERROR_CAPACITY, 0);
+    REFUSED(frame.torque_scale = -1, 20, QDIST_ERROR_FRAME, 9);
+    REFUSED(bad[1].position[0] = none, 20, QDIST_ERROR_CONTACT_POSITION, 1);
+    REFUSED(bad[1].normal[1] = 1, 20, QDIST_ERROR_CONTACT_NORMAL, 1);
+    REFUSED(bad[1].tangents[0] = 1, 20, QDIST_ERROR_CONTACT_TANGENTS, 1);
+    REFUSED(bad[0].mu = -1, 20, QDIST_ERROR_CONTACT_FRICTION, 0);
+    REFUSED(bad[1].force_cap = none, 20, QDIST_ERROR_CONTACT_CAP, 1);
+#undef REFUSED
+    CHECK(Q(qdist_pyramids)(good, 2, &frame, &layout, NULL, 20, pyramids, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_pyramids)(good, 2, &frame, &layout, edges, 20, NULL, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_pyramids)(good, 2, &frame, NULL, edges, 20, pyramids, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_pyramids)(good, 0, &frame, &layout, edges, 20, pyramids, NULL) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_pyramid_edges)(&layout, 3, &count) == QDIST_ERROR_CONTACT_FRICTION && count == 77);
+    CHECK(Q(qdist_pyramid_edges)(NULL, 1, &count) == QDIST_ERROR_NULL && Q(qdist_pyramid_edges)(&layout, 1, NULL) == QDIST_ERROR_NULL);
+
+    CHECK(Q(qdist_preset_graspit)(&preset, origin, 0, 1, QDIST_L1) == QDIST_ERROR_FRAME);
+    CHECK(Q(qdist_preset_graspit)(&preset, origin, 1, 0, QDIST_L1) == QDIST_ERROR_FRAME);
+    CHECK(Q(qdist_preset_graspit)(&preset, nowhere, 1, 1, QDIST_L1) == QDIST_ERROR_FRAME);
+    CHECK(Q(qdist_preset_graspit)(&preset, origin, 1, 1, 2) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_preset_graspit)(&preset, NULL, 1, 1, QDIST_L1) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_preset_graspit)(NULL, origin, 1, 1, QDIST_L1) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_preset_dex_net)(&preset, origin, 1, 2, 0) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_preset_dex_net)(&preset, origin, 0, 8, 0) == QDIST_ERROR_FRAME);
+    CHECK(Q(qdist_preset_dex_net)(&preset, origin, 1, 8, -1) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_preset_frogger)(&preset, 2, 1) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_preset_frogger)(&preset, 4, 0) == QDIST_ERROR_FRAME);
+    CHECK(memcmp(&preset, &kept, sizeof preset) == 0);
+    preset.tool = 3;
+    memcpy(bad, good, sizeof bad);
+    CHECK(Q(qdist_preset_contact)(&preset, &bad[0]) == QDIST_ERROR_ARGUMENT);
+    preset.tool = QDIST_TOOL_FROGGER;
+    bad[0].mu = -1;
+    CHECK(Q(qdist_preset_contact)(&preset, &bad[0]) == QDIST_ERROR_CONTACT_FRICTION && bad[0].force_cap == 0);
+    CHECK(Q(qdist_preset_contact)(&preset, NULL) == QDIST_ERROR_NULL && Q(qdist_preset_contact)(NULL, &bad[0]) == QDIST_ERROR_NULL);
+
+    /* Lists that were not made, or were changed. */
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &w) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_pyramids)(good, 2, &frame, &layout, edges, 20, pyramids, NULL) == QDIST_OK);
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &w) == QDIST_OK);
+    CHECK(Q(qdist_pyramid_wrenches_support)(&w, u, point) == 0 && fabs(point[0] - 1) < 1e-6);
+    w.norm = 2;
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &w) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_pyramid_wrenches_support)(&w, u, point) == QDIST_ERROR_ARGUMENT);
+    w.norm = QDIST_L1;
+    pyramids[1].error = -1;
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &w) == QDIST_ERROR_ARGUMENT);
+    pyramids[1].error = 0;
+    edges[100] = none;
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &w) == QDIST_ERROR_CONTACT_WRENCH);
+    CHECK(Q(qdist_opposed_mean)(pyramids, 2, &mean) == QDIST_ERROR_CONTACT_WRENCH);
+    CHECK(Q(qdist_opposed_mean)(NULL, 2, &mean) == QDIST_ERROR_NULL && Q(qdist_opposed_mean)(pyramids, 2, NULL) == QDIST_ERROR_NULL);
+}
+
 /* An error says what is wrong and with which contact, and nothing is written. */
 static void Q(errors)(void) {
     const Q(qdist_contact) good[2] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(1, 0.5, 0.1)};
@@ -299,6 +680,9 @@ static void Q(errors)(void) {
     CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
 }
 
+#undef NEAR
+#undef NARROW
+
 static void Q(grasp)(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 128, 2048)];
     qdist_solver *solver = NULL;
@@ -308,6 +692,10 @@ static void Q(grasp)(void) {
     Q(closures)(solver);
     Q(forces)();
     Q(gradients)(solver);
+    Q(fingers)(solver);
+    Q(finger_errors)();
+    Q(linearised)(solver);
+    Q(linearised_errors)();
     Q(errors)();
 }
 

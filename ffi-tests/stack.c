@@ -1,5 +1,5 @@
 /* How much stack a query takes: runs it on a painted stack of its own and looks how far the paint is gone. */
-#include "qdist.h"
+#include "qdist_grasp.h"
 #include <stdio.h>
 #include <string.h>
 #include <ucontext.h>
@@ -94,15 +94,50 @@ static void rays(void) { six(1); }
 static void span(void) { six(2); }
 static void warm(void) { six(3); }
 
+/* A finger of four contacts whose joints make all forces, with limits that count. */
+static qdist_finger_f64 finger;
+
+static void make_finger(void) {
+    const qdist_wrench_frame_f64 frame = {{0, 0, 0}, 1};
+    const double limits[8] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5};
+    qdist_contact_f64 contacts[4];
+    memset(contacts, 0, sizeof contacts);
+    for (int i = 0; i < 4; i++) {
+        contacts[i].position[0] = i;
+        contacts[i].normal[1] = 1;
+        contacts[i].friction = QDIST_SOFT, contacts[i].mu = 0.5, contacts[i].mus = 0.1;
+        contacts[i].actuated = 1, contacts[i].joints = 8;
+        for (int k = 0; k < 32; k++) contacts[i].jacobian[k] = (k * 7 + i * 5) % 11 * 0.1 + (k < 8);
+    }
+    if (qdist_finger_init_f64(&finger, contacts, 4, limits, QDIST_FORCE_MODEL_ACTIVE, &frame, 0, NULL)) failures++;
+}
+
+static void ask_finger(void) {
+    const qdist_finger_wrenches_f64 wrenches = {&finger, 1, QDIST_LINF};
+    double u[6] = {0.3, 1, -0.2, 0.1, 0.4, 0.5}, point[6], forces[16];
+    if (qdist_finger_wrenches_support_f64((void *)&wrenches, u, point) || qdist_finger_forces_f64(&finger, u, forces)) failures++;
+}
+
+static void distribute(void) {
+    const qdist_finger_wrenches_f64 wrenches = {&finger, 1, QDIST_LINF};
+    double load[6] = {0, -0.1, 0, 0, 0, 0}, shares[6], forces[16];
+    qdist_forces_f64 result;
+    result.struct_size = sizeof result;
+    if (qdist_finger_contact_forces_f64(&wrenches, NULL, load, NULL, shares, forces, &result)) failures++;
+}
+
 int main(void) {
     long base = used(nothing);
     long f32 = used(boxes_f32) - base, f64 = used(boxes_f64) - base;
     long by_cones = used(cones) - base, by_rays = used(rays) - base, in_span = used(span) - base, by_warm = used(warm) - base;
     printf("stack in bytes: depth of boxes f32 %ld, f64 %ld\n", f32, f64);
     printf("d_Q in 6-D f64: cones %ld, rays %ld, in span %ld, warm %ld\n", by_cones, by_rays, in_span, by_warm);
+    long made = used(make_finger) - base, asked = used(ask_finger) - base, distributed = used(distribute) - base;
+    printf("finger f64: made %ld, asked %ld, forces %ld\n", made, asked, distributed);
     const long most = 30 * 1024;
     /* Not a golden number; a guard against an array that slips onto the stack. */
     if (f32 > 8 * 1024 || f64 > 12 * 1024 || by_cones > most || by_rays > most || in_span > most || by_warm > most) failures++;
+    if (made > 96 * 1024 || asked > 56 * 1024 || distributed > 64 * 1024) failures++;
     printf("stack: %d passed, %d failed\n", failures ? 0 : 1, failures ? 1 : 0);
     return failures != 0;
 }

@@ -89,7 +89,7 @@ typedef struct qdist_solver qdist_solver;
  * it concluded, the bracket holds. A plan says how. */
 
 // callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-// number. Callbacks must not return it, nor INT32_MIN + 1.
+// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
 #define QDIST_CALLBACK_NONFINITE (-2147483647 - 1)
 
 // Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
@@ -182,26 +182,29 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 #define QDIST_ERROR_TORQUE_LIMIT 23
 
+// The memory does not hold a finger of this scalar type.
+#define QDIST_ERROR_FINGER 24
+
 // A mesh has no triangles.
-#define QDIST_ERROR_MESH_EMPTY 24
+#define QDIST_ERROR_MESH_EMPTY 25
 
 // A triangle of a mesh refers to a vertex that does not exist.
-#define QDIST_ERROR_MESH_INDEX 25
+#define QDIST_ERROR_MESH_INDEX 26
 
 // A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
-#define QDIST_ERROR_MESH_VERTEX 26
+#define QDIST_ERROR_MESH_VERTEX 27
 
 // All vertices that a mesh's triangles use lie on one line.
-#define QDIST_ERROR_MESH_COLLINEAR 27
+#define QDIST_ERROR_MESH_COLLINEAR 28
 
 // What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
-#define QDIST_ERROR_MESH_NOT_SOLID 28
+#define QDIST_ERROR_MESH_NOT_SOLID 29
 
 // The allocator is set already, or memory has been allocated without.
-#define QDIST_ERROR_ALLOCATOR 29
+#define QDIST_ERROR_ALLOCATOR 30
 
 // A defect of the library, which went no further. Please report it.
-#define QDIST_ERROR_INTERNAL 30
+#define QDIST_ERROR_INTERNAL 31
 
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
@@ -356,8 +359,8 @@ qdist_status qdist_solver_init6_f64(void *memory,
 // user: the pointer from the set. direction: as many numbers as the dimension; finite and not all zero, but
 // not necessarily of unit length. point: room for as many.
 //
-// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN or
-// INT32_MIN + 1. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
+// INT32_MIN + 2. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 // points are equally far, any of them.
 typedef int32_t (*qdist_support_f64)(void *user, const double *direction, double *point);
 

@@ -37,6 +37,10 @@ extern "C" {
  *
  * Small numbers with names, for both scalars. */
 
+// callback_code of a set of fingers when no point was found that is provably as good as the set's `error` says. Known of numbers far from any
+// hand only, such as friction coefficients of 1e9.
+#define QDIST_CALLBACK_UNSOLVED (-2147483647 + 1)
+
 // What did a search for contact forces conclude?
 typedef int32_t qdist_force_outcome;
 
@@ -45,6 +49,15 @@ typedef uint32_t qdist_friction;
 
 // The size of all contact forces together.
 typedef uint32_t qdist_norm;
+
+// Who makes the contact forces of a finger?
+typedef uint32_t qdist_force_model;
+
+// Where the edges of a friction pyramid are.
+typedef uint32_t qdist_layout;
+
+// A tool with linearised cones.
+typedef uint32_t qdist_tool;
 
 // Is a grasp force-closed?
 typedef int32_t qdist_closure;
@@ -66,6 +79,33 @@ typedef int32_t qdist_kink;
 
 // Each normal force is at most its cap: every contact has a supply of its own.
 #define QDIST_LINF 1
+
+// Anyone: the structure bears what the joints do not. Limits hold for the torques that reach the joints.
+#define QDIST_FORCE_MODEL_PASSIVE 0
+
+// The joints, at all contacts of the finger together. A finger without joints is passive.
+#define QDIST_FORCE_MODEL_ACTIVE 1
+
+// `sides` of them on the edge of the cone, the first along o; a soft contact has two more, which only spin.
+#define QDIST_LAYOUT_INSCRIBED 0
+
+// The same, so much longer that the pyramid contains the cone.
+#define QDIST_LAYOUT_CIRCUMSCRIBED 1
+
+// GraspIt!: 8; for a soft contact 20.
+#define QDIST_LAYOUT_GRASPIT 2
+
+// Dex-Net: `sides`; for a soft contact two moments more, without a normal force. mus does not count.
+#define QDIST_LAYOUT_DEX_NET 3
+
+// o is n x e_x, or n x e_z where n is along e_x.
+#define QDIST_TOOL_GRASPIT 0
+
+// o is the projection of e_x.
+#define QDIST_TOOL_DEX_NET 1
+
+// o is the projection of (1.2, 2.3, 3.4); edges have unit length.
+#define QDIST_TOOL_FROGGER 2
 
 // No, or by no more than rounding can tell: `direction` separates.
 #define QDIST_CLOSURE_OPEN 0
@@ -325,7 +365,7 @@ typedef struct {
     double residual;
     // Calls of the support function, those at the beginning not counted.
     uint32_t iterations;
-    // QDIST_CALLBACK_NONFINITE when a primitive is no number; else 0.
+    // QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
     int32_t callback_code;
 } qdist_forces_f64;
 
@@ -409,6 +449,190 @@ qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
                                        qdist_refined_f64 *refined,
                                        qdist_contact_gradient_f64 *gradients,
                                        uint32_t *which);
+
+/* ================================================== FINGERS WITH TORQUE LIMITS ==================================================
+ *
+ * A finger as a whole: up to four contacts that share their joints, whose torques have limits. What it can exert is the sum of its
+ * contacts' wrenches over all contact forces (f_1, ..., f_k) within friction cones, force caps and |sum of J_i^T f_i| <= limits, joint by
+ * joint; with QDIST_FORCE_MODEL_ACTIVE only those that the joints make at all contacts together. Its support function is a small convex
+ * program, each time with a proof: 0.1 microseconds where the limits do not count, else 10 for one contact to 130 for four, with up to
+ * 43 KB of stack in double. Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints. */
+
+// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
+typedef struct {
+    // Says that it is a finger.
+    uint32_t tag;
+    // 1 to 4.
+    uint32_t contacts;
+    // That of its frame.
+    double torque_scale;
+    // Opaque.
+    double words[577];
+} qdist_finger_f64;
+
+// The wrench set of a list of fingers, 1 or more, with {0} in it. In QDIST_L1 the fingers share one supply; the contacts of one
+// finger do not. The list must outlive the sets that are made of it.
+typedef struct {
+    const qdist_finger_f64 *fingers;
+    uint32_t count;
+    // QDIST_L1 or QDIST_LINF.
+    qdist_norm norm;
+} qdist_finger_wrenches_f64;
+
+// Makes a finger of 1 to 4 contacts, all with Jacobians of the same joints, or all without (the palm).
+//
+// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
+// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
+// qdist_active_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
+// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
+//
+// 5 microseconds where no limit counts; up to 5 milliseconds, with 80 KB of stack in double, where there are limits and several contacts.
+qdist_status qdist_finger_init_f64(qdist_finger_f64 *finger,
+                                   const qdist_contact_f64 *contacts,
+                                   uint32_t count,
+                                   const double *limits,
+                                   qdist_force_model model,
+                                   const qdist_wrench_frame_f64 *frame,
+                                   double rank_tolerance,
+                                   uint32_t *which);
+
+// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
+qdist_status qdist_set_finger_wrenches_f64(qdist_set_f64 *set,
+                                           const qdist_finger_wrenches_f64 *wrenches);
+
+// Support function of a set of fingers. It may return QDIST_CALLBACK_UNSOLVED.
+int32_t qdist_finger_wrenches_support_f64(void *user, const double *direction, double *point);
+
+// The contact forces whose wrenches add up to the finger's farthest wrench along a direction, six numbers: force i is forces[4 * i] to
+// forces[4 * i + 3], as qdist_contact_force has it. `forces` has room for 4 * contacts numbers.
+//
+// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
+qdist_status qdist_finger_forces_f64(const qdist_finger_f64 *finger,
+                                     const double *direction,
+                                     double *forces);
+
+// The smallest contact forces that keep the object in equilibrium with an external wrench, as qdist_contact_forces: share i is that of finger
+// i. Size is measured in force caps and torque limits together: forces of size 1 or less keep all of both.
+//
+// forces: NULL; or room for 16 * count numbers: forces[16 * i + 4 * k] and the three after it become the force of contact k of finger i, as
+// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
+//
+// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
+qdist_status qdist_finger_contact_forces_f64(const qdist_finger_wrenches_f64 *wrenches,
+                                             qdist_force_memory_f64 *memory,
+                                             const double *external,
+                                             const qdist_force_options_f64 *options,
+                                             double *shares,
+                                             double *forces,
+                                             qdist_forces_f64 *result);
+
+/* ======================================================= LINEARISED CONES =======================================================
+ *
+ * Friction pyramids instead of cones, for comparison with the tools that use them. The set of pyramids is smaller than that of the cones
+ * (inscribed) or larger (circumscribed); qdist_solve6 brackets d of either, and the primitives of the same contacts give the exact one.
+ * A preset is what one tool does, as read in its source; Q is the unit ball in all of them. Fill in position, normal and friction of each
+ * contact, let the preset complete it, make pyramids with its frame and layout, and a set of them with its norm. */
+
+// Where the edges of friction pyramids are.
+typedef struct {
+    // QDIST_LAYOUT_INSCRIBED, QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_GRASPIT or QDIST_LAYOUT_DEX_NET.
+    qdist_layout kind;
+    // Edges around the normal, at least 3; GraspIt! has its own.
+    uint32_t sides;
+    // QDIST_LAYOUT_GRASPIT: one millimetre in your unit of length. QDIST_LAYOUT_DEX_NET: radius of the fingertip, 0.005 by its default. Else
+    // not read.
+    double length;
+} qdist_layout_f64;
+
+// What one tool computes.
+typedef struct {
+    // Reference point and torque scale.
+    qdist_wrench_frame_f64 frame;
+    // The edges.
+    qdist_layout_f64 layout;
+    // How forces of several contacts are measured together.
+    qdist_norm norm;
+    // How tangents lie: QDIST_TOOL_GRASPIT, QDIST_TOOL_DEX_NET or QDIST_TOOL_FROGGER.
+    qdist_tool tool;
+} qdist_preset_f64;
+
+// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
+typedef struct {
+    // Coordinate k of edge j is edges[6 * j + k], a wrench.
+    const double *edges;
+    uint32_t count;
+    // An upper bound of the length of the edges, and of the rounding error of the support function.
+    double extent;
+    double error;
+} qdist_pyramid_f64;
+
+// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.
+typedef struct {
+    const qdist_pyramid_f64 *pyramids;
+    uint32_t count;
+    // QDIST_L1 or QDIST_LINF.
+    qdist_norm norm;
+} qdist_pyramid_wrenches_f64;
+
+// GraspIt! with an object of this centre of gravity, three numbers, and largest radius about it. millimetre: its unit of length in yours. A
+// soft contact's mus is its 8 sqrt(a b) / 15 mu, with a and b the semi axes of the contact ellipse.
+qdist_status qdist_preset_graspit_f64(qdist_preset_f64 *preset,
+                                      const double *center,
+                                      double max_radius,
+                                      double millimetre,
+                                      qdist_norm norm);
+
+// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
+// configured the median of the three coordinates of the upper corner of the bounding box. Its defaults: 8 sides, and 0.005 for the radius.
+// Its normal force is the cosine between closing direction and normal: set force_cap after qdist_preset_contact.
+qdist_status qdist_preset_dex_net_f64(qdist_preset_f64 *preset,
+                                      const double *center,
+                                      double torque_scale,
+                                      uint32_t sides,
+                                      double finger_radius);
+
+// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
+// qdist_opposed_mean.
+qdist_status qdist_preset_frogger_f64(qdist_preset_f64 *preset,
+                                      uint32_t sides,
+                                      double lamb);
+
+// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
+// edges. Of the preset only `tool` counts.
+qdist_status qdist_preset_contact_f64(const qdist_preset_f64 *preset,
+                                      qdist_contact_f64 *contact);
+
+// How many edges the pyramid of a contact with this friction has.
+qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout, qdist_friction friction, uint32_t *edges);
+
+// Pyramids of `count` contacts: their edges, one contact's after the other's, go to `edges`, with room for `capacity` edges of six numbers, and
+// `pyramids`, with room for `count`, points there.
+//
+// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
+// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+qdist_status qdist_pyramids_f64(const qdist_contact_f64 *contacts,
+                                uint32_t count,
+                                const qdist_wrench_frame_f64 *frame,
+                                const qdist_layout_f64 *layout,
+                                double *edges,
+                                uint32_t capacity,
+                                qdist_pyramid_f64 *pyramids,
+                                uint32_t *which);
+
+// Makes a set of a list of pyramids. Reads all edges.
+qdist_status qdist_set_pyramid_wrenches_f64(qdist_set_f64 *set, const qdist_pyramid_wrenches_f64 *wrenches);
+
+// Support function of a set of pyramids.
+int32_t qdist_pyramid_wrenches_support_f64(void *user, const double *direction, double *point);
+
+// Minus the mean of all edges, as a segment for Q: d of the set with QDIST_L1 is then the t of FRoGGeR's min-weight metric, see qdist_min_weight.
+// QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
+qdist_status qdist_opposed_mean_f64(const qdist_pyramid_f64 *pyramids,
+                                    uint32_t count,
+                                    qdist_segment_gauge_f64 *segment);
+
+// FRoGGeR's normalised min-weight metric N l from t: t / (1 + t). Increasing in t, so that it takes a bracket to a bracket. Its default asks for 0.3.
+double qdist_min_weight_f64(double t);
 
 /* ================================================= CONTACTS AND FINGERS, FLOAT ================================================= */
 
@@ -584,6 +808,109 @@ qdist_status qdist_grasp_gradients_f32(const qdist_wrenches_f32 *wrenches,
                                        qdist_refined_f32 *refined,
                                        qdist_contact_gradient_f32 *gradients,
                                        uint32_t *which);
+
+/* ============================================== FINGERS WITH TORQUE LIMITS, FLOAT ============================================== */
+
+typedef struct {
+    uint32_t tag;
+    uint32_t contacts;
+    float torque_scale;
+    float words[577];
+} qdist_finger_f32;
+
+typedef struct {
+    const qdist_finger_f32 *fingers;
+    uint32_t count;
+    qdist_norm norm;
+} qdist_finger_wrenches_f32;
+
+qdist_status qdist_finger_init_f32(qdist_finger_f32 *finger,
+                                   const qdist_contact_f32 *contacts,
+                                   uint32_t count,
+                                   const float *limits,
+                                   qdist_force_model model,
+                                   const qdist_wrench_frame_f32 *frame,
+                                   float rank_tolerance,
+                                   uint32_t *which);
+
+qdist_status qdist_set_finger_wrenches_f32(qdist_set_f32 *set, const qdist_finger_wrenches_f32 *wrenches);
+
+int32_t qdist_finger_wrenches_support_f32(void *user, const float *direction, float *point);
+
+qdist_status qdist_finger_forces_f32(const qdist_finger_f32 *finger, const float *direction, float *forces);
+
+qdist_status qdist_finger_contact_forces_f32(const qdist_finger_wrenches_f32 *wrenches,
+                                             qdist_force_memory_f32 *memory,
+                                             const float *external,
+                                             const qdist_force_options_f32 *options,
+                                             float *shares,
+                                             float *forces,
+                                             qdist_forces_f32 *result);
+
+/* =================================================== LINEARISED CONES, FLOAT =================================================== */
+
+typedef struct {
+    qdist_layout kind;
+    uint32_t sides;
+    float length;
+} qdist_layout_f32;
+
+typedef struct {
+    qdist_wrench_frame_f32 frame;
+    qdist_layout_f32 layout;
+    qdist_norm norm;
+    qdist_tool tool;
+} qdist_preset_f32;
+
+typedef struct {
+    const float *edges;
+    uint32_t count;
+    float extent;
+    float error;
+} qdist_pyramid_f32;
+
+typedef struct {
+    const qdist_pyramid_f32 *pyramids;
+    uint32_t count;
+    qdist_norm norm;
+} qdist_pyramid_wrenches_f32;
+
+qdist_status qdist_preset_graspit_f32(qdist_preset_f32 *preset,
+                                      const float *center,
+                                      float max_radius,
+                                      float millimetre,
+                                      qdist_norm norm);
+
+qdist_status qdist_preset_dex_net_f32(qdist_preset_f32 *preset,
+                                      const float *center,
+                                      float torque_scale,
+                                      uint32_t sides,
+                                      float finger_radius);
+
+qdist_status qdist_preset_frogger_f32(qdist_preset_f32 *preset, uint32_t sides, float lamb);
+
+qdist_status qdist_preset_contact_f32(const qdist_preset_f32 *preset, qdist_contact_f32 *contact);
+
+qdist_status qdist_pyramid_edges_f32(const qdist_layout_f32 *layout, qdist_friction friction, uint32_t *edges);
+
+qdist_status qdist_pyramids_f32(const qdist_contact_f32 *contacts,
+                                uint32_t count,
+                                const qdist_wrench_frame_f32 *frame,
+                                const qdist_layout_f32 *layout,
+                                float *edges,
+                                uint32_t capacity,
+                                qdist_pyramid_f32 *pyramids,
+                                uint32_t *which);
+
+qdist_status qdist_set_pyramid_wrenches_f32(qdist_set_f32 *set, const qdist_pyramid_wrenches_f32 *wrenches);
+
+int32_t qdist_pyramid_wrenches_support_f32(void *user, const float *direction, float *point);
+
+qdist_status qdist_opposed_mean_f32(const qdist_pyramid_f32 *pyramids,
+                                    uint32_t count,
+                                    qdist_segment_gauge_f32 *segment);
+
+float qdist_min_weight_f32(float t);
 
 #ifdef __cplusplus
 }

@@ -40,7 +40,7 @@ header() {
 { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
 header src/capi/prelude.h "status version symmetry" "solver sets shapes points combine gauges query span warm" |
     cat -s >"$out"
-header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients" | cat -s >"$out.grasp"
+header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
 header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/depth" "" | cat -s >"$out.mesh"
 
 # $1: what was written, $2: the header.

@@ -11,8 +11,8 @@ use common::dice::Dice;
 use grasp_common::{contact_map, direction, radii, random_contact, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{
-    Contact, ContactError, Finger, ForceModel, Friction, GraspError, HandContact, Jacobian, Norm, Primitive, UNSOLVED,
-    WrenchFrame, WrenchSet, active_wrenches, default_tolerance, wrenches,
+    Contact, ContactError, Finger, ForceModel, ForceOptions, ForceSolver, Friction, GraspError, HandContact, Jacobian,
+    MAX_CONTACTS, Norm, Primitive, UNSOLVED, WrenchFrame, WrenchSet, active_wrenches, default_tolerance, wrenches,
 };
 use qdist::qset::Ball;
 use qdist::support::{Failure, Support};
@@ -594,4 +594,58 @@ fn efficiency_with_limited_joints() {
             }
         }
     }
+}
+
+/// The forces that a load is distributed to make the shares, within friction, and within `upper` times caps and limits.
+#[test]
+fn distributed_forces_make_the_shares() {
+    let mut dice = Dice::new(0x5ba7e);
+    let (mut found, mut limited) = (0, 0);
+    for case in 0..120 {
+        let first: Parts<f64> = random_parts(&mut dice, 1 + case % 3);
+        let second = Parts { frame: first.frame, ..random_parts(&mut dice, 1 + case % 2) };
+        let hand = [first, second];
+        let fingers = [hand[0].finger(), hand[1].finger()];
+        let set = WrenchSet::new(&fingers, if case % 2 == 0 { Norm::LInf } else { Norm::L1 });
+        let mut farthest = || set.support(&Vector::from(dice.direction::<6>())).unwrap();
+        let load = -(farthest() * 0.3 + farthest() * 0.2);
+        let mut solver = ForceSolver::new();
+        let mut shares = [Vector::zeros(); 2];
+        let mut forces = [[Vector::repeat(7.0); MAX_CONTACTS]; 2];
+        let options = ForceOptions { relative: 1e-6, ..ForceOptions::default() };
+        let answer = solver.resist(&set, &load, &options, &mut shares).unwrap();
+        solver.contact_forces(&set, &mut forces).unwrap();
+        if answer.upper >= f64::MAX {
+            assert!(solver.parts().next().is_none() && forces.iter().flatten().flatten().all(|&x| x == 0.0));
+            continue;
+        }
+        found += 1;
+        assert!(solver.parts().map(|(_, weight)| weight).sum::<f64>() <= answer.upper);
+        for ((parts, forces), (share, finger)) in hand.iter().zip(&forces).zip(shares.iter().zip(&fingers)) {
+            let tiny = 1e-9 * answer.upper;
+            let mut sum = Vector::<f64, 6>::zeros();
+            for (own, f) in parts.contacts.iter().zip(forces) {
+                sum += parts.frame.contact_map(&own.contact) * f;
+                let radii = radii(&own.contact, &parts.frame);
+                let edge = f[0] + tiny * own.contact.force_cap();
+                assert!(f[0] <= (answer.upper + tiny) * own.contact.force_cap() && edge >= 0.0);
+                let y: f64 = (0..3).filter(|&c| radii[c] > 0.0).map(|c| (f[1 + c] / radii[c]).powi(2)).sum();
+                assert!(y.sqrt() <= edge, "case {case}: {} {edge}", y.sqrt());
+                assert!((0..3).all(|c| radii[c] > 0.0 || f[1 + c] == 0.0));
+            }
+            assert!(forces.iter().skip(parts.contacts.len()).flatten().all(|&x| x == 0.0));
+            assert!((sum - share).norm() <= tiny * finger.extent(), "case {case}: {sum} {share}");
+            for (j, &limit) in parts.limits.iter().enumerate().filter(|(_, limit)| limit.is_finite()) {
+                let torques = || {
+                    let all = (0..parts.contacts.len()).flat_map(|i| (0..4).map(move |row| (i, row)));
+                    all.map(|(i, row)| (i, parts.entry(i, row, j), row))
+                };
+                let torque: f64 = torques().map(|(i, x, row)| x * forces[i][row]).sum();
+                let size: f64 = torques().map(|(i, x, _)| x.abs() * parts.contacts[i].contact.force_cap()).sum();
+                assert!(torque.abs() <= answer.upper * limit + tiny * size, "case {case}: {torque} {limit}");
+                limited += usize::from(torque.abs() > 0.9 * answer.upper * limit && torque != 0.0);
+            }
+        }
+    }
+    assert!(found > 80 && limited > 20, "{found} {limited}");
 }

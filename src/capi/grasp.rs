@@ -8,7 +8,7 @@ use super::status::{
     QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_NONFINITE,
     QDIST_ERROR_TOLERANCE, QDIST_ERROR_TORQUE_LIMIT, qdist_status,
 };
-use crate::grasp::{ContactError, ForceError, ForceOutcome, GraspError, Kink, Norm};
+use crate::grasp::{ContactError, ForceError, ForceModel, ForceOutcome, GraspError, Kink, Norm};
 use core::ffi::c_char;
 
 /// The friction of a contact.
@@ -28,6 +28,42 @@ pub type qdist_norm = u32;
 pub const QDIST_L1: qdist_norm = 0;
 /// Each normal force is at most its cap: every contact has a supply of its own.
 pub const QDIST_LINF: qdist_norm = 1;
+
+/// Who makes the contact forces of a finger?
+pub type qdist_force_model = u32;
+
+/// Anyone: the structure bears what the joints do not. Limits hold for the torques that reach the joints.
+pub const QDIST_FORCE_MODEL_PASSIVE: qdist_force_model = 0;
+/// The joints, at all contacts of the finger together. A finger without joints is passive.
+pub const QDIST_FORCE_MODEL_ACTIVE: qdist_force_model = 1;
+
+/// callback_code of a set of fingers when no point was found that is provably as good as the set's `error` says. Known of numbers far from any
+/// hand only, such as friction coefficients of 1e9.
+pub const QDIST_CALLBACK_UNSOLVED: i32 = -2147483647 + 1;
+
+const _: () = assert!(QDIST_CALLBACK_UNSOLVED == crate::grasp::UNSOLVED);
+
+/// Where the edges of a friction pyramid are.
+pub type qdist_layout = u32;
+
+/// `sides` of them on the edge of the cone, the first along o; a soft contact has two more, which only spin.
+pub const QDIST_LAYOUT_INSCRIBED: qdist_layout = 0;
+/// The same, so much longer that the pyramid contains the cone.
+pub const QDIST_LAYOUT_CIRCUMSCRIBED: qdist_layout = 1;
+/// GraspIt!: 8; for a soft contact 20.
+pub const QDIST_LAYOUT_GRASPIT: qdist_layout = 2;
+/// Dex-Net: `sides`; for a soft contact two moments more, without a normal force. mus does not count.
+pub const QDIST_LAYOUT_DEX_NET: qdist_layout = 3;
+
+/// A tool with linearised cones.
+pub type qdist_tool = u32;
+
+/// o is n x e_x, or n x e_z where n is along e_x.
+pub const QDIST_TOOL_GRASPIT: qdist_tool = 0;
+/// o is the projection of e_x.
+pub const QDIST_TOOL_DEX_NET: qdist_tool = 1;
+/// o is the projection of (1.2, 2.3, 3.4); edges have unit length.
+pub const QDIST_TOOL_FROGGER: qdist_tool = 2;
 
 /// Is a grasp force-closed?
 pub type qdist_closure = i32;
@@ -114,11 +150,26 @@ pub(super) fn from_force(error: ForceError) -> qdist_status {
     }
 }
 
+pub(super) fn force_model(model: qdist_force_model) -> Check<ForceModel> {
+    match model {
+        QDIST_FORCE_MODEL_PASSIVE => Ok(ForceModel::Passive),
+        QDIST_FORCE_MODEL_ACTIVE => Ok(ForceModel::Active),
+        _ => Err(QDIST_ERROR_ARGUMENT),
+    }
+}
+
 pub(super) fn norm(norm: qdist_norm) -> Check<Norm> {
     match norm {
         QDIST_L1 => Ok(Norm::L1),
         QDIST_LINF => Ok(Norm::LInf),
         _ => Err(QDIST_ERROR_ARGUMENT),
+    }
+}
+
+pub(super) fn from_norm(norm: Norm) -> qdist_norm {
+    match norm {
+        Norm::L1 => QDIST_L1,
+        Norm::LInf => QDIST_LINF,
     }
 }
 

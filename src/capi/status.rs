@@ -64,20 +64,22 @@ pub const QDIST_ERROR_FRAME: qdist_status = 21;
 pub const QDIST_ERROR_TOLERANCE: qdist_status = 22;
 /// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 pub const QDIST_ERROR_TORQUE_LIMIT: qdist_status = 23;
+/// The memory does not hold a finger of this scalar type.
+pub const QDIST_ERROR_FINGER: qdist_status = 24;
 /// A mesh has no triangles.
-pub const QDIST_ERROR_MESH_EMPTY: qdist_status = 24;
+pub const QDIST_ERROR_MESH_EMPTY: qdist_status = 25;
 /// A triangle of a mesh refers to a vertex that does not exist.
-pub const QDIST_ERROR_MESH_INDEX: qdist_status = 25;
+pub const QDIST_ERROR_MESH_INDEX: qdist_status = 26;
 /// A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
-pub const QDIST_ERROR_MESH_VERTEX: qdist_status = 26;
+pub const QDIST_ERROR_MESH_VERTEX: qdist_status = 27;
 /// All vertices that a mesh's triangles use lie on one line.
-pub const QDIST_ERROR_MESH_COLLINEAR: qdist_status = 27;
+pub const QDIST_ERROR_MESH_COLLINEAR: qdist_status = 28;
 /// What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
-pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 28;
+pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 29;
 /// The allocator is set already, or memory has been allocated without.
-pub const QDIST_ERROR_ALLOCATOR: qdist_status = 29;
+pub const QDIST_ERROR_ALLOCATOR: qdist_status = 30;
 /// A defect of the library, which went no further. Please report it.
-pub const QDIST_ERROR_INTERNAL: qdist_status = 30;
+pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -127,7 +129,7 @@ pub const QDIST_PLAN_WARM: qdist_plan = 4;
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-/// number. Callbacks must not return it, nor INT32_MIN + 1.
+/// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
 pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 
 const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
@@ -160,6 +162,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_FRAME => c"wrench frame out of range",
         QDIST_ERROR_TOLERANCE => c"rank tolerance out of range",
         QDIST_ERROR_TORQUE_LIMIT => c"torque limits out of range",
+        QDIST_ERROR_FINGER => c"not a finger",
         QDIST_ERROR_MESH_EMPTY => c"mesh without triangles",
         QDIST_ERROR_MESH_INDEX => c"mesh triangle refers to no vertex",
         QDIST_ERROR_MESH_VERTEX => c"mesh vertex not finite or too large",

@@ -394,9 +394,14 @@ impl<T: Real> Preset<T> {
 /// The segment from 0 to minus the mean of all edges: d of the L1 set for this Q is t of FRoGGeR's min-weight metric. `None`: there
 /// are no edges, or the mean is 0 and the metric 1.
 pub fn opposed_mean<T: Real>(cones: &[PyramidalCone<'_, T>]) -> Option<Segment<T, 6>> {
-    let edges = || cones.iter().flat_map(|cone| cone.edges());
-    let sum = edges().fold(Vector::<T, 6>::zeros(), |sum, edge| sum + Vector::from(*edge));
-    Segment::new(sum / -T::count(edges().count())).ok()
+    opposed(cones.iter().flat_map(|cone| cone.edges()))
+}
+
+/// The same of edges, wherever they are.
+pub(crate) fn opposed<'a, T: Real>(edges: impl Iterator<Item = &'a [T; 6]>) -> Option<Segment<T, 6>> {
+    let add = |(sum, count): (Vector<T, 6>, usize), edge: &[T; 6]| (sum + Vector::from(*edge), count + 1);
+    let (sum, count) = edges.fold((Vector::zeros(), 0), add);
+    Segment::new(sum / -T::count(count)).ok()
 }
 
 /// FRoGGeR's normalised min-weight metric N l from the t of [`opposed_mean`]: t / (1 + t). Increasing in t, so that it takes a bracket

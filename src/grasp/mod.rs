@@ -134,6 +134,8 @@ pub use frame::WrenchFrame;
 pub use gradient::{ContactGradient, Kink, Refined, Share};
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
+#[cfg(feature = "capi")]
+pub(crate) use linearized::opposed;
 pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, opposed_mean};
 pub use primitive::Primitive;
 pub use span::Subspace;

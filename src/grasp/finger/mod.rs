@@ -94,7 +94,8 @@ pub enum ForceModel {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finger<T> {
-    contacts: usize,
+    /// Not as a `usize`: what it measures is then the same on all targets.
+    contacts: u32,
     tuples: Tuples<T>,
     /// F_i by columns, for forces up to the largest cap.
     forces: [[[T; 4]; 4]; MAX_CONTACTS],
@@ -156,7 +157,7 @@ impl<T: Real> Finger<T> {
 
     /// The number k of contacts.
     pub fn contacts(&self) -> usize {
-        self.contacts
+        self.contacts as usize
     }
 
     /// The contact forces (f1, f2, f3, f4) whose wrenches add up to the support point along `u`, of the k contacts in
@@ -184,7 +185,7 @@ impl<T: Real> Finger<T> {
         if self.tuples.alone(&values).1 * unit * (T::one() + T::count(32) * T::ROUNDOFF) <= floor {
             return Ok([[T::zero(); 4]; MAX_CONTACTS]);
         }
-        Ok(self.tuples.farthest(&values, self.contacts)?.0)
+        Ok(self.tuples.farthest(&values, self.contacts())?.0)
     }
 
     fn wrench(&self, x: &Tuple<T>) -> Vector<T, 6> {
@@ -337,7 +338,7 @@ impl<'a, T: Real> Parts<'a, T> {
             }
         }
         let error = tuples.gap * size + T::count(32) * T::ROUNDOFF * rounding + T::TINY;
-        Ok(Finger { contacts, tuples, forces, wrenches, size, error })
+        Ok(Finger { contacts: contacts as u32, tuples, forces, wrenches, size, error })
     }
 
     /// The largest torque of a joint with the row `row`, if no joint had limits.
@@ -360,7 +361,7 @@ impl<'a, T: Real> Parts<'a, T> {
             let mut values = [[zero; 4]; MAX_CONTACTS];
             values[i][0] = one;
             if finger.tuples.caps[i] > zero
-                && let Ok((_, most)) = finger.tuples.farthest(&values, finger.contacts)
+                && let Ok((_, most)) = finger.tuples.farthest(&values, finger.contacts())
             {
                 self.caps[i] = before[i].at_most(cap * most * (one + T::count(16) * T::ROUNDOFF));
             }

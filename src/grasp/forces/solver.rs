@@ -24,12 +24,14 @@
 //!   contributions added to h_W(u) and that of u.w taken away, where w is what the shares exert. How far that is from equilibrium is
 //!   reported, too.
 
+use super::super::finger::{Finger, MAX_CONTACTS};
 use super::super::usable;
 use super::super::wrench_set::{Contribution, WrenchSet};
 use super::search::Search;
 use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
 use crate::scalar::{Real, Vector, norm, unit};
 use crate::support::Failure;
+use core::borrow::Borrow;
 use heapless::Vec;
 
 /// Finds the smallest contact forces that resist a wrench; remembers where the last ones came from, for the next tick of a
@@ -62,6 +64,8 @@ use heapless::Vec;
 pub struct ForceSolver<T> {
     /// Directions of the points that the last forces were made of.
     known: Vec<Vector<T, 6>, 6>,
+    /// Their weights; none when there are no forces.
+    weights: Vec<T, 6>,
 }
 
 impl<T: Real> Default for ForceSolver<T> {
@@ -73,17 +77,52 @@ impl<T: Real> Default for ForceSolver<T> {
 impl<T: Real> ForceSolver<T> {
     /// A solver that knows nothing yet.
     pub fn new() -> Self {
-        Self { known: Vec::new() }
+        Self { known: Vec::new(), weights: Vec::new() }
     }
 
     /// A solver that knows the directions of another one, [`known`](Self::known), for those who keep them as numbers; six at most.
     pub fn knowing(directions: impl Iterator<Item = Vector<T, 6>>) -> Self {
-        Self { known: directions.take(6).collect() }
+        Self { known: directions.take(6).collect(), weights: Vec::new() }
     }
 
     /// The directions whose points the last forces were made of.
     pub fn known(&self) -> &[Vector<T, 6>] {
         &self.known
+    }
+
+    /// What the last forces were made of: directions u and weights >= 0, whose sum is at most `upper`. The shares are the sums of
+    /// weight times what [`WrenchSet::shares`] gives along u. Empty when no forces were found.
+    pub fn parts(&self) -> impl Iterator<Item = (&Vector<T, 6>, T)> {
+        self.known.iter().zip(self.weights.iter().copied())
+    }
+
+    /// The forces of all contacts of all fingers, of which the last shares were made; `set` is that of the last call. `forces[i]` are those
+    /// of finger i as [`Finger::forces`] gives them; those beyond are left alone. They are a sum of points of F with weights that add up
+    /// to `upper` at most: within friction cones, and within `upper` times caps and torque limits.
+    ///
+    /// Cost: 12 calls of the support function.
+    ///
+    /// # Errors
+    /// Those of the fingers, which the search would have met before.
+    pub fn contact_forces<C: Contribution<T> + Borrow<Finger<T>>>(
+        &self,
+        set: &WrenchSet<'_, T, C>,
+        forces: &mut [[Vector<T, 4>; MAX_CONTACTS]],
+    ) -> Result<(), Failure> {
+        forces.iter_mut().take(set.contributions().len()).for_each(|own| *own = [Vector::zeros(); MAX_CONTACTS]);
+        for (u, weight) in self.parts() {
+            let mut failed = Ok(());
+            set.shares(u, |i, _| {
+                if let (Some(finger), Some(sums)) = (set.contributions().get(i), forces.get_mut(i)) {
+                    match finger.borrow().forces(u) {
+                        Ok(own) => sums.iter_mut().zip(own).for_each(|(sum, f)| *sum += f * weight),
+                        Err(failure) => failed = Err(failure),
+                    }
+                }
+            })?;
+            failed?;
+        }
+        Ok(())
     }
 
     /// The smallest contact forces that keep the object in equilibrium with the `external` wrench: their `shares` sum up to -external (eq. 2).
@@ -112,6 +151,7 @@ impl<T: Real> ForceSolver<T> {
         check(external, options)?;
         let shares = shares.get_mut(..set.contributions().len()).ok_or(ForceError::Room)?;
         shares.fill(Vector::zeros());
+        self.weights.clear();
         let zero = T::zero();
         let mut forces = Forces {
             outcome: ForceOutcome::Converged,
@@ -167,6 +207,11 @@ impl<T: Real> ForceSolver<T> {
         }
         if !search.program.is_short() && search.unit > T::zero() {
             search.distribute(shares, forces, external)?;
+        }
+        if forces.upper < T::HUGE {
+            for (_, weight) in search.program.parts() {
+                let _ = self.weights.push((weight * search.unit).at_least(T::zero()));
+            }
         }
         for direction in [search.best.1, search.last, forces.direction] {
             let lower = search.lower(&direction)?;

@@ -5,11 +5,12 @@
 
 use super::super::super::generic::{aligned, array, finite, known_size, length, padded, shared};
 use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
-use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
+use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use super::wrenches::qdist_wrenches_f64;
-use crate::grasp::{ForceOptions, ForceOutcome, ForceSolver, check_forces};
+use crate::grasp::{Contribution, ForceOptions, ForceOutcome, ForceSolver, WrenchSet, check_forces};
 use crate::scalar::Vector;
+use crate::support::Failure;
 
 /// When a search for contact forces ends. NULL stands for the defaults.
 #[repr(C)]
@@ -54,7 +55,7 @@ pub struct qdist_forces_f64 {
     pub residual: f64,
     /// Calls of the support function, those at the beginning not counted.
     pub iterations: u32,
-    /// QDIST_CALLBACK_NONFINITE when a primitive is no number; else 0.
+    /// QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
     pub callback_code: i32,
 }
 
@@ -99,61 +100,82 @@ pub unsafe extern "C" fn qdist_contact_forces_f64(
     result: *mut qdist_forces_f64,
 ) -> qdist_status {
     let solve = || {
-        aligned(shares)?;
-        aligned(result)?;
         // SAFETY: what the header asks of the caller.
-        let (set, count, external) = unsafe {
-            known_size((&raw const (*result).struct_size).read(), size_of::<qdist_forces_f64>())?;
-            let wrenches = shared(wrenches)?;
-            (wrenches.checked()?, wrenches.count as usize, array(external, Some(6))?)
-        };
-        // SAFETY: what the header asks of the caller.
-        let options = unsafe { convert(options) }?;
-        let mut solver = if memory.is_null() {
-            ForceSolver::new()
-        } else {
-            // SAFETY: what the header asks of the caller.
-            let memory = unsafe { shared(memory.cast_const()) }?;
-            let (known, _) = memory.directions.as_chunks::<6>();
-            finite(&memory.directions)?;
-            let known = known.get(..memory.count as usize).ok_or(QDIST_ERROR_ARGUMENT)?;
-            ForceSolver::knowing(known.iter().map(|&u| Vector::from(u)))
-        };
-        let external = Vector::<f64, 6>::from_iterator(external.iter().copied());
-        // Refused before the shares are touched.
-        check_forces(&external, &options).map_err(from_force)?;
-        // SAFETY: what the header asks of the caller: room for six numbers each, which nothing else refers to. They need no initial value, but
-        // a reference does.
-        let list = unsafe {
-            shares.write_bytes(0, 6 * count);
-            core::slice::from_raw_parts_mut(shares.cast::<Vector<f64, 6>>(), count)
-        };
-        let found = solver.resist(&set, &external, &options, list).map_err(from_force)?;
-        if !memory.is_null() {
-            let mut kept = qdist_force_memory_f64 { count: 0, directions: [0.0; 36] };
-            let (slots, _) = kept.directions.as_chunks_mut::<6>();
-            for (slot, direction) in slots.iter_mut().zip(solver.known()) {
-                *slot = (*direction).into();
-                kept.count += 1;
-            }
-            // SAFETY: checked.
-            unsafe { memory.write(kept) };
+        unsafe {
+            let set = shared(wrenches)?.checked()?;
+            resist(&set, memory, external, options, shares, result, |_| Ok(()))
         }
-        let made = qdist_forces_f64 {
-            struct_size: size_of::<qdist_forces_f64>() as u32,
-            outcome: force_outcome(found.outcome),
-            lower: found.lower,
-            upper: found.upper,
-            direction: padded(found.direction.iter().copied()),
-            residual: found.residual,
-            iterations: found.iterations,
-            callback_code: found.failure,
-        };
-        // SAFETY: checked.
-        unsafe { result.write(made) };
-        if found.outcome == ForceOutcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
     };
     status(solve())
+}
+
+/// `also` is called with the solver after the search.
+///
+/// # Safety
+/// What the header asks of the caller of `qdist_contact_forces`.
+pub(super) unsafe fn resist<C: Contribution<f64>>(
+    set: &WrenchSet<'_, f64, C>,
+    memory: *mut qdist_force_memory_f64,
+    external: *const f64,
+    options: *const qdist_force_options_f64,
+    shares: *mut f64,
+    result: *mut qdist_forces_f64,
+    also: impl FnOnce(&ForceSolver<f64>) -> Result<(), Failure>,
+) -> Check {
+    let count = set.contributions().len();
+    aligned(shares)?;
+    aligned(result)?;
+    // SAFETY: the caller's promise.
+    let (external, options) = unsafe {
+        known_size((&raw const (*result).struct_size).read(), size_of::<qdist_forces_f64>())?;
+        (array(external, Some(6))?, convert(options)?)
+    };
+    let mut solver = if memory.is_null() {
+        ForceSolver::new()
+    } else {
+        // SAFETY: the caller's promise.
+        let memory = unsafe { shared(memory.cast_const()) }?;
+        let (known, _) = memory.directions.as_chunks::<6>();
+        finite(&memory.directions)?;
+        let known = known.get(..memory.count as usize).ok_or(QDIST_ERROR_ARGUMENT)?;
+        ForceSolver::knowing(known.iter().map(|&u| Vector::from(u)))
+    };
+    let external = Vector::<f64, 6>::from_iterator(external.iter().copied());
+    // Refused before the shares are touched.
+    check_forces(&external, &options).map_err(from_force)?;
+    // SAFETY: the caller's promise: room for six numbers each, which nothing else refers to. They need no initial value, but
+    // a reference does.
+    let list = unsafe {
+        shares.write_bytes(0, 6 * count);
+        core::slice::from_raw_parts_mut(shares.cast::<Vector<f64, 6>>(), count)
+    };
+    let mut found = solver.resist(set, &external, &options, list).map_err(from_force)?;
+    if let Err(Failure(code)) = also(&solver) {
+        (found.outcome, found.failure) = (ForceOutcome::SupportFailed, code);
+    }
+    if !memory.is_null() {
+        let mut kept = qdist_force_memory_f64 { count: 0, directions: [0.0; 36] };
+        let (slots, _) = kept.directions.as_chunks_mut::<6>();
+        for (slot, direction) in slots.iter_mut().zip(solver.known()) {
+            *slot = (*direction).into();
+            kept.count += 1;
+        }
+        // SAFETY: checked.
+        unsafe { memory.write(kept) };
+    }
+    let made = qdist_forces_f64 {
+        struct_size: size_of::<qdist_forces_f64>() as u32,
+        outcome: force_outcome(found.outcome),
+        lower: found.lower,
+        upper: found.upper,
+        direction: padded(found.direction.iter().copied()),
+        residual: found.residual,
+        iterations: found.iterations,
+        callback_code: found.failure,
+    };
+    // SAFETY: checked.
+    unsafe { result.write(made) };
+    if found.outcome == ForceOutcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
 }
 
 /// # Safety

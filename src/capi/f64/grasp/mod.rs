@@ -1,7 +1,9 @@
 //! Grasps from C, for `f64`.
 
 pub mod contacts;
+pub mod fingers;
 pub mod forces;
 pub mod gradients;
+pub mod linearized;
 pub mod quality;
 pub mod wrenches;
