@@ -152,6 +152,10 @@ fn run(request: &Request) -> Result<(), Trouble> {
 }
 
 fn main() -> ExitCode {
+    if std::env::args().any(|argument| argument == "--help") {
+        println!("{USAGE}");
+        return ExitCode::SUCCESS;
+    }
     let request = match Request::parse(std::env::args().skip(1)) {
         Ok(request) => request,
         Err(trouble) => {

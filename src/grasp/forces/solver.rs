@@ -127,10 +127,10 @@ impl<T: Real> ForceSolver<T> {
 
     /// The smallest contact forces that keep the object in equilibrium with the `external` wrench: their `shares` sum up to -external (eq. 2).
     ///
-    /// `external` is a wrench in the coordinates of the set ([`WrenchFrame::wrench`](super::WrenchFrame::wrench)): force, and
+    /// `external` is a wrench in the coordinates of the set ([`WrenchFrame::wrench`](crate::grasp::WrenchFrame::wrench)): force, and
     /// moment over the torque scale. `shares[i]` becomes the wrench of contribution i; shares beyond are left alone.
-    /// [`WrenchFrame::contact_force`](super::WrenchFrame::contact_force) makes a contact force of it. How the size is measured is the
-    /// set's [`Norm`](super::Norm). Whatever the outcome, the shares are wrenches that the contacts can exert with size `upper`, and
+    /// [`WrenchFrame::contact_force`](crate::grasp::WrenchFrame::contact_force) makes a contact force of it. How the size is measured is the
+    /// set's [`Norm`](crate::grasp::Norm). Whatever the outcome, the shares are wrenches that the contacts can exert with size `upper`, and
     /// `residual` away from equilibrium; or they are zero, when the search ended before there were any.
     ///
     /// Forces that were found before make the search shorter, and change nothing else: they may belong to another wrench or set.
