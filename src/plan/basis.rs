@@ -88,6 +88,7 @@ impl<T: Real, const N: usize> Basis<T, N> {
     }
 
     /// The inverse anew, by elimination with row pivots; stays as it is when the points have become dependent.
+    #[cfg(feature = "grasp")] // nobody else needs it
     pub fn rebuild(&mut self) {
         let mut left = SMatrix::<T, N, N>::from_fn(|i, j| self.points[j].point[i]);
         let mut right = SMatrix::<T, N, N>::identity();
