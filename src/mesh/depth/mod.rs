@@ -39,6 +39,7 @@ mod random;
 mod sampling;
 mod search;
 mod seeds;
+mod tracker;
 mod walk;
 
 use super::certificate::Certifier;
@@ -49,6 +50,7 @@ use super::{Contact, Counters, Distance, Model, Pair};
 use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
+pub use tracker::{Budget, DepthTracker};
 
 /// How the boundary of the free space is searched around a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
