@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The tool goes round its part on a closed curve, in and out of contact, turning as it goes. Every tick asks a [`DepthTracker`] for the depth
-//! with a clock that says "late" after 0.6 ms, and is timed. Another thread asks cold queries at the newest pose all the time, whose answers are merged in. Without
+//! with a clock that says "late" after 0.4 ms (a query or a certificate that has begun is finished), and is timed. Another thread asks cold queries at the newest pose all the time, whose answers are merged in. Without
 //! `--realtime` ticks follow each other as fast as they can, so the background falls behind.
 //!
 //! **Force.** The answer's pose is where the tool would be if it could not enter the part, a god-object; a spring ties the tool to it.
@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 /// What a tick may take.
 const TICK: Duration = Duration::from_millis(1);
 /// No query begins later in a tick.
-const LATE: Duration = Duration::from_micros(600);
+const LATE: Duration = Duration::from_micros(400);
 /// Of the spring, per length of the files.
 const STIFFNESS: f64 = 1.0;
 /// Every so many ticks a cold answer is asked for, to compare.

@@ -17,6 +17,7 @@
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what a contact says of motions near by, and `sampling` is the walk's other kind of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
+//! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
 //! from a small generator of its own: the same query with the same seed number gives the same answer, to the last digit.

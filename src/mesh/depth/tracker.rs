@@ -58,8 +58,8 @@ const ROUNDING: f64 = 1e-12;
 /// What a tick may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Collision, contact and distance queries, at least 1: the pose itself is always tested. An escape from B's box comes on top where no
-    /// free pose is known (six tests at most), and the queries of one push-out step may.
+    /// Collision, contact and distance queries, at least 1: the pose itself is always tested. Where no free pose is known, the escape from
+    /// B's box comes on top, six tests at most; in the first tick and after a jump, the queries of a push-out step that has begun may.
     pub max_queries: u64,
     /// The tick ends when `upper - lower` is at most this fraction of `upper`.
     pub relative: f64,
