@@ -58,7 +58,7 @@ mod surface;
 pub mod topology;
 
 pub use check::Report;
-pub use depth::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Walk, Watch};
+pub use depth::{Budget, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Outcome, Progress, Walk, Watch};
 pub use model::{Model, ModelError};
 pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};
 pub use surface::{MAX_COORDINATE, Mesh, MeshError};

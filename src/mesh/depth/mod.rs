@@ -17,6 +17,7 @@
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what a contact says of motions near by, and `sampling` is the walk's other kind of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
+//! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
 //! from a small generator of its own: the same query with the same seed number gives the same answer, to the last digit.
@@ -39,6 +40,7 @@ mod random;
 mod sampling;
 mod search;
 mod seeds;
+mod tracker;
 mod walk;
 
 use super::certificate::Certifier;
@@ -49,6 +51,7 @@ use super::{Contact, Counters, Distance, Model, Pair};
 use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
+pub use tracker::{Budget, DepthTracker};
 
 /// How the boundary of the free space is searched around a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -93,8 +93,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     }
 
     pub fn run(mut self) -> MeshDepth {
-        let here = self.metric.distance(&self.start, &self.start);
-        if !(self.options.relative >= 0.0 && here.is_finite() && usable(&self.start)) {
+        if !self.is_valid() {
             return self.answer(Outcome::Invalid);
         }
         if !self.pair.collides(&self.start) {
@@ -125,20 +124,30 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
         }
         self.polish();
-        let outcome = match self.stop {
+        self.answer(self.outcome())
+    }
+
+    /// Whether the query's pose and options are proper numbers.
+    pub fn is_valid(&self) -> bool {
+        let here = self.metric.distance(&self.start, &self.start);
+        self.options.relative >= 0.0 && here.is_finite() && usable(&self.start)
+    }
+
+    /// How the search ended.
+    pub fn outcome(&self) -> Outcome {
+        match self.stop {
             Some(outcome) => outcome,
             None if self.upper == f64::INFINITY => Outcome::Stuck,
             None if self.is_closed() => Outcome::Converged,
             None => Outcome::Bounded,
-        };
-        self.answer(outcome)
+        }
     }
 
     fn is_closed(&self) -> bool {
-        self.upper - self.lower <= self.options.relative * self.upper
+        self.upper.is_finite() && self.upper - self.lower <= self.options.relative * self.upper
     }
 
-    fn answer(&self, outcome: Outcome) -> MeshDepth {
+    pub fn answer(&self, outcome: Outcome) -> MeshDepth {
         let (now, before) = (self.pair.counters(), self.before);
         MeshDepth {
             outcome,
@@ -208,7 +217,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     }
 
     /// The lower bound, from the pieces of both bodies.
-    fn certify(&mut self) -> f64 {
+    pub fn certify(&mut self) -> f64 {
         let (Some(a), Some(b)) = (self.a.pieces(), self.b.pieces()) else { return 0.0 };
         match self.metric.certificate() {
             Certificate::None => 0.0,

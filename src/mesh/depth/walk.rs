@@ -20,13 +20,13 @@ use crate::mesh::optimize::{Constraint, StepOptions, Twist};
 use nalgebra::Isometry3;
 
 /// The first trust region, in diagonals of A.
-const TRUST: f64 = 0.05;
+pub const TRUST: f64 = 0.05;
 /// The margin within which contacts are seen, in diagonals of A.
 const MARGIN: f64 = 0.005;
 /// The gap that remains, in trust regions.
 const CLEARANCE: f64 = 3e-3;
 /// A walk has converged when its trust region is this small, in diagonals of A.
-const LEAST: f64 = 2e-5;
+pub const LEAST: f64 = 2e-5;
 /// Contacts are looked for that arise when A turns by this much.
 const MOST_TILT: f64 = 0.1;
 /// Second-order corrections of a step at most.
@@ -50,14 +50,27 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) {
     if !search.goes_on() {
         return;
     }
+    let pose = search.slide(from, 0.2 * MARGIN * search.size);
+    follow(search, &pose, TRUST * search.size, ITERATIONS, bounds);
+}
+
+/// Walks from a free pose near the boundary, with a first trust region and so many steps, and offers where it ends. Returns that pose, and
+/// the trust region there.
+pub fn follow(
+    search: &mut Search,
+    from: &Isometry3<f64>,
+    trust: f64,
+    steps: usize,
+    bounds: &Bounds,
+) -> (Isometry3<f64>, f64) {
     search.walks += 1;
     let margin = MARGIN * search.size;
-    let mut pose = search.slide(from, 0.2 * margin);
-    let mut value = search.distance(&pose);
     let most = TRUST * search.size;
-    let mut trust = most;
+    let mut pose = *from;
+    let mut value = search.distance(&pose);
+    let mut trust = trust.min(most);
     let mut poor = 0;
-    for iteration in 0..ITERATIONS {
+    for iteration in 0..steps {
         if !search.goes_on() {
             break;
         }
@@ -87,6 +100,7 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) {
         }
     }
     search.take(&pose);
+    (pose, trust)
 }
 
 /// One step: the next pose, the length of the full step, and the fraction of it that was free.
@@ -106,6 +120,9 @@ fn step(
     let mut fraction = 1.0;
     for _ in 0..6 {
         let next = found.scaled(fraction).applied(pose);
+        if !search.goes_on() {
+            return None;
+        }
         if search.distance(&next) < value && !search.pair.collides(&next) {
             return Some((next, length, fraction));
         }
