@@ -35,7 +35,7 @@
 //! # Ok::<(), qdist::mesh::certificate::SolidError>(())
 //! ```
 
-use nalgebra::{Isometry3, Matrix3, Point3};
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 mod decompose;
 mod grow;
@@ -104,6 +104,8 @@ pub enum Effort {
 /// Answers queries; holds the solver's memory (100 KB).
 pub struct Certifier {
     memory: Box<search::Memory>,
+    /// The translation that parts the pair of pieces which proved the last bound of DISP.
+    pub(super) way_out: Option<Vector3<f64>>,
 }
 
 impl Default for Certifier {
@@ -116,7 +118,7 @@ impl Certifier {
     /// Allocates the memory.
     #[must_use]
     pub fn new() -> Self {
-        Certifier { memory: Box::new(search::Memory::new()) }
+        Certifier { memory: Box::new(search::Memory::new()), way_out: None }
     }
 
     /// A lower bound of PD^g_DISP: of the largest displacement of a vertex of A in any motion of A out of B. `pose` places A: x -> R x + t in
@@ -127,7 +129,10 @@ impl Certifier {
             search.run(level);
         }
         let depth = search.refined();
-        if effort < Effort::Heavy { depth } else { depth.max(search.travel(depth)) }
+        let way_out = search.way_out();
+        let depth = if effort < Effort::Heavy { depth } else { depth.max(search.travel(depth)) };
+        self.way_out = way_out;
+        depth
     }
 
     /// A lower bound of the root of PD^g in the object norm, a length: sqrt of the mean squared displacement of A's points in any motion of A

@@ -132,7 +132,13 @@ impl<'q> Search<'q> {
     pub fn refined(&mut self) -> f64 {
         let Some(best) = self.best else { return 0.0 };
         let fine = self.solve(best.a, best.b, best.normal, Options { relative: 1e-9, ..Options::default() });
-        (fine.map_or(0.0, |found| found.depth).max(best.depth) - self.margin()).max(0.0)
+        self.best = fine.filter(|found| found.depth >= best.depth).or(self.best);
+        (self.best.map_or(0.0, |best| best.depth) - self.margin()).max(0.0)
+    }
+
+    /// The shortest translation of A that parts the best pair. Two convex bodies are that pair, and no motion does with less.
+    pub fn way_out(&self) -> Option<Vector3<f64>> {
+        self.best.map(|best| best.normal * -best.depth)
     }
 
     /// The bound of the object norm that the best pairs prove.

@@ -7,7 +7,7 @@ use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scr
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
 use crate::mesh::{Counters, Model, Pair, Screw};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Translation3};
 
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
@@ -103,6 +103,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
         self.lower = self.certify();
         let plan = plan(self.options.effort);
+        self.leave_by_the_proof();
         let escape = rays::escape(&mut self);
         for pose in self.options.poses {
             self.walk_from(pose, &plan);
@@ -226,12 +227,29 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Brings the best pose to where it touches.
+    /// The translation that parts what proves the lower bound: of two convex bodies the best pose there is. A little farther, since
+    /// what just touches collides.
+    fn leave_by_the_proof(&mut self) {
+        let Some(out) = self.certifier.way_out.take() else { return };
+        let convex = |model: &Model| model.pieces().is_some_and(|pieces| pieces.pieces().len() == 1);
+        let tries = if convex(self.a) && convex(self.b) { 4 } else { 1 };
+        for clearance in [1e-12, 1e-11, 1e-10, 1e-8].into_iter().take(tries) {
+            let further = out + out.normalize() * (clearance * self.size);
+            let pose = Translation3::from(further) * self.start;
+            if !self.pair.collides(&pose) {
+                return self.take(&pose);
+            }
+        }
+    }
+
+    /// Brings the best pose to where it touches; nearer where that is all that is left between the bounds.
     fn polish(&mut self) {
-        if self.upper.is_finite() {
-            let pose = self.pose;
-            let slid = self.slide(&pose, 1e-6 * self.size);
-            self.take(&slid);
+        for tolerance in [1e-6, 1e-10] {
+            if self.upper.is_finite() && (tolerance == 1e-6 || self.is_closed()) {
+                let pose = self.pose;
+                let slid = self.slide(&pose, tolerance * self.size);
+                self.take(&slid);
+            }
         }
     }
 
