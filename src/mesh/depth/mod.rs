@@ -41,6 +41,7 @@ mod sampling;
 mod search;
 mod seeds;
 mod tracker;
+mod translation;
 mod walk;
 
 use super::certificate::Certifier;

@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use super::seeds::{pushout, rays};
-use super::walk::{Bounds, CONTACTS, walk};
+use super::walk::{Bounds, CONTACTS, ITERATIONS, TRUST, follow, walk};
 use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
@@ -41,18 +41,33 @@ struct Plan {
     rays: rays::Plan,
     /// Pairs of triangles that pushing out may look at in one query.
     work: usize,
-    /// A walk's least gain.
+    /// The least gain of an iteration of the walks.
+    coarse: f64,
+    /// That of the last walk, from the best pose.
     gain: f64,
     /// A walk is given up when it will not come below this multiple of the best.
     hope: f64,
 }
 
-fn plan(effort: Effort) -> Plan {
-    let rays = |translations, screws, worse, seeds| rays::Plan { translations, screws, worse, seeds };
+/// Meshes whose numbers of triangles have a smaller product than this are quick, and searched more.
+const QUICK: f64 = 1e5;
+/// By this factor at most.
+const MOST_MORE: f64 = 6.0;
+
+fn plan(effort: Effort, a: &Model, b: &Model) -> Plan {
+    let pairs = a.mesh().triangles().len() as f64 * b.mesh().triangles().len() as f64;
+    let more = (QUICK / pairs).sqrt().sqrt().clamp(1.0, MOST_MORE);
+    let times = |count: usize| (count as f64 * more) as usize;
+    let rays = |translations, screws, worse, seeds| rays::Plan {
+        translations,
+        screws: times(screws),
+        worse,
+        seeds: times(seeds),
+    };
     match effort {
-        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), work: 4_000, gain: 1e-3, hope: 1.0 },
-        Effort::Default => Plan { rays: rays(32, 64, 1.3, 6), work: 12_000, gain: 1e-4, hope: 1.0 },
-        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), work: 200_000, gain: 1e-5, hope: 1.2 },
+        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), work: 4_000, coarse: 3e-2, gain: 1e-3, hope: 0.97 },
+        Effort::Default => Plan { rays: rays(32, 64, 1.3, 5), work: 8_000, coarse: 3e-2, gain: 1e-4, hope: 0.95 },
+        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), work: 200_000, coarse: 1e-4, gain: 1e-5, hope: 1.2 },
     }
 }
 
@@ -102,7 +117,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
         self.lower = self.certify();
-        let plan = plan(self.options.effort);
+        let plan = plan(self.options.effort, self.a, self.b);
         self.leave_by_the_proof();
         let escape = rays::escape(&mut self);
         for pose in self.options.poses {
@@ -112,20 +127,39 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             Some(escape) if self.options.rays => rays::cast(&mut self, &plan.rays, &escape),
             _ => escape.into_iter().collect(),
         };
-        // Beside the rays' seeds, not in competition with them; given up when it leads farther than they do.
+        for (k, seed) in seeds.iter().enumerate() {
+            self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 2.0);
+            let hopeless = self.upper * plan.hope;
+            walk(&mut self, &seed.pose, &Bounds { gain: plan.coarse, hopeless });
+        }
+        // Dear, and of use where rays have missed a narrow passage.
         if self.options.push_out
+            && self.may_be_much_less()
             && self.goes_on()
             && let Some(seed) = pushout::push_out(&mut self, plan.work)
         {
             walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
-        for (k, seed) in seeds.iter().enumerate() {
-            self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 1.0);
-            let hopeless = self.upper * plan.hope;
-            walk(&mut self, &seed.pose, &Bounds { gain: plan.gain, hopeless });
-        }
+        self.refine(plan.gain);
         self.polish();
         self.answer(self.outcome())
+    }
+
+    /// Whether the lower bound leaves room for a far better pose. The object norm's is wider in any case.
+    fn may_be_much_less(&self) -> bool {
+        let near = match self.metric.certificate() {
+            Certificate::Disp => 1.15,
+            Certificate::SqrtSigma | Certificate::None => 1.5,
+        };
+        self.upper > near * self.lower
+    }
+
+    /// Walks on from the best pose.
+    fn refine(&mut self, gain: f64) {
+        if self.upper.is_finite() && self.goes_on() {
+            let pose = self.pose;
+            follow(self, &pose, TRUST * self.size, ITERATIONS, &Bounds { gain, hopeless: f64::INFINITY });
+        }
     }
 
     /// Whether the query's pose and options are proper numbers.

@@ -8,6 +8,9 @@
 //! Contacts that would become local minima when A turns a little count too: where a corner lies near an edge, the corner on the face and the
 //! edge on the edge are minima in turns, and a walk that sees only one of them at a time goes to and fro between both.
 //!
+//! A seed that is a translation is first walked without turning: there the depth of translations is found, which no answer should exceed, and a
+//! program in three variables finds it in fewer steps.
+//!
 //! The step is tried; as long as it collides it is halved, and the trust region shrinks with it. The clearance pays for what linearisation
 //! and second-order correction leave out, so it shrinks with the trust region too: both vanish as the walk converges. The margin stays: contacts that
 //! are out of sight would stop the next step.
@@ -15,14 +18,16 @@
 use super::contact_space::Primitive;
 use super::sampling::sampled_step;
 use super::search::Search;
+use super::translation::Translation;
 use super::{Scratch, Walk};
+use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{Constraint, StepOptions, Twist};
 use nalgebra::Isometry3;
 
 /// The first trust region, in diagonals of A.
 pub const TRUST: f64 = 0.05;
 /// The margin within which contacts are seen, in diagonals of A.
-const MARGIN: f64 = 0.005;
+const MARGIN: f64 = 0.003;
 /// The gap that remains, in trust regions.
 const CLEARANCE: f64 = 3e-3;
 /// A walk has converged when its trust region is this small, in diagonals of A.
@@ -32,7 +37,9 @@ const MOST_TILT: f64 = 0.1;
 /// Second-order corrections of a step at most.
 const CORRECTIONS: usize = 2;
 /// Iterations at most.
-const ITERATIONS: usize = 30;
+pub const ITERATIONS: usize = 30;
+/// The least gain of an iteration while A only translates: what follows gains the rest.
+const TRANSLATION_GAIN: f64 = 1e-3;
 /// Contacts that a step can take; of more, the nearest.
 pub const CONTACTS: usize = 256;
 
@@ -45,13 +52,26 @@ pub struct Bounds {
     pub hopeless: f64,
 }
 
+/// How A may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Freedom {
+    Translation,
+    Motion,
+}
+
 /// Walks from a free pose, and offers where it ends.
 pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) {
     if !search.goes_on() {
         return;
     }
-    let pose = search.slide(from, 0.2 * MARGIN * search.size);
-    follow(search, &pose, TRUST * search.size, ITERATIONS, bounds);
+    let mut pose = search.slide(from, 0.2 * MARGIN * search.size);
+    if from.rotation == search.start.rotation && search.options.walk == Walk::Linearised {
+        let bounds = Bounds { gain: TRANSLATION_GAIN, ..*bounds };
+        pose = advance(search, &pose, TRUST * search.size, ITERATIONS, Freedom::Translation, &bounds).0;
+    }
+    if search.goes_on() {
+        follow(search, &pose, TRUST * search.size, ITERATIONS, bounds);
+    }
 }
 
 /// Walks from a free pose near the boundary, with a first trust region and so many steps, and offers where it ends. Returns that pose, and
@@ -64,6 +84,17 @@ pub fn follow(
     bounds: &Bounds,
 ) -> (Isometry3<f64>, f64) {
     search.walks += 1;
+    advance(search, from, trust, steps, Freedom::Motion, bounds)
+}
+
+fn advance(
+    search: &mut Search,
+    from: &Isometry3<f64>,
+    trust: f64,
+    steps: usize,
+    freedom: Freedom,
+    bounds: &Bounds,
+) -> (Isometry3<f64>, f64) {
     let margin = MARGIN * search.size;
     let most = TRUST * search.size;
     let mut pose = *from;
@@ -75,7 +106,7 @@ pub fn follow(
             break;
         }
         let clearance = (CLEARANCE * trust).min(0.1 * margin);
-        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin, clearance) else {
+        let Some((next, length, fraction)) = step(search, &pose, value, trust, margin, clearance, freedom) else {
             trust *= 0.1;
             if trust < LEAST * search.size {
                 break;
@@ -111,9 +142,10 @@ fn step(
     trust: f64,
     margin: f64,
     clearance: f64,
+    freedom: Freedom,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
     let found = match search.options.walk {
-        Walk::Linearised => linear_step(search, pose, trust, margin, clearance)?,
+        Walk::Linearised => linear_step(search, pose, trust, margin, clearance, freedom)?,
         Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
     };
     let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
@@ -144,14 +176,30 @@ pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) 
 
 /// The best motion under the contacts. What the linearisation leaves out is looked up in the primitive constraints themselves, and
 /// the program is solved again with that much less room (a second-order correction).
-fn linear_step(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64, clearance: f64) -> Option<Twist> {
-    see(search, pose, trust, margin);
+fn linear_step(
+    search: &mut Search,
+    pose: &Isometry3<f64>,
+    trust: f64,
+    margin: f64,
+    clearance: f64,
+    freedom: Freedom,
+) -> Option<Twist> {
+    let turns = freedom == Freedom::Motion;
+    see(search, pose, if turns { trust } else { 0.0 }, margin);
     let Scratch { contacts, primitives, constraints, memory } = &mut *search.scratch;
     constraints.clear();
-    constraints.extend(contacts.iter().map(|c| Constraint { point: c.on_a, normal: c.normal, gap: c.gap - clearance }));
+    let translation = Translation { frame: *search.metric.frame() };
+    let metric: &dyn Metric = if turns { search.metric } else { &translation };
+    // At the centre a contact has no moment.
+    let centre = pose * translation.frame.centre;
+    constraints.extend(contacts.iter().map(|c| Constraint {
+        point: if turns { c.on_a } else { centre },
+        normal: c.normal,
+        gap: c.gap - clearance,
+    }));
     let options = StepOptions { trust, tolerance: 1e-3 };
     let back = pose.inverse();
-    let mut twist = search.metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
+    let mut twist = metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
     for _ in 0..CORRECTIONS {
         let motion = twist.applied(pose) * back;
         let mut held = true;
@@ -165,7 +213,7 @@ fn linear_step(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f
         if held {
             break;
         }
-        twist = search.metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
+        twist = metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
     }
     Some(twist)
 }

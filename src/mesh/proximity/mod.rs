@@ -11,7 +11,7 @@
 //!
 //! # How
 //!
-//! All queries walk over pairs of boxes (`relative`) and end at pairs of triangles, which are separated by axes
+//! All queries walk over pairs of boxes (`relative`; the test in `boxes`) and end at pairs of triangles, which are separated by axes
 //! (`triangle`) or asked for the features that they own (`candidate`). The solid test adds rays (`inside`). `distance` begins with an upper
 //! bound by projecting from surface to surface (`project`), `contact` keeps what lies in both normal cones, and
 //! `screw` strings distances together to motions. What decided the last query of a kind is tried first in the next.
@@ -21,10 +21,12 @@
 //! A pose that is not finite, whose quaternion is not near unit length, or that moves farther than
 //! [`MAX_COORDINATE`](super::MAX_COORDINATE) is never free: it collides, has distance 0 and no contacts.
 
+mod boxes;
 mod candidate;
 mod contact;
 mod distance;
 mod inside;
+mod lanes;
 mod project;
 mod relative;
 mod screw;

@@ -11,6 +11,7 @@
 
 use super::super::Mesh;
 use super::super::bvh::{Below, Node};
+use super::boxes::Boxes;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use std::ops::ControlFlow;
 
@@ -38,6 +39,14 @@ impl Relative {
         let translation = pose.translation.vector;
         let doubt = 16.0 * f64::EPSILON * (3.0 * a.scale() + translation.amax() + b.scale());
         Relative { absolute: rotation.abs(), rotation, translation, doubt }
+    }
+
+    pub fn rotation(&self) -> &Matrix3<f64> {
+        &self.rotation
+    }
+
+    pub fn translation(&self) -> &Vector3<f64> {
+        &self.translation
     }
 
     /// A point of A in the frame of B.
@@ -89,41 +98,6 @@ impl Relative {
         let along = if along > 0.0 { along * along / size } else { 0.0 };
         in_b.max(in_a).max(along)
     }
-
-    /// Whether two boxes are farther apart than the margin, by the axes of both, the gaps of one frame together, and the
-    /// products of axes. The cheapest first.
-    #[inline]
-    fn boxes_apart(&self, a: &Node, b: &Node, margin: f64) -> bool {
-        let (r, s) = (&self.rotation, &self.absolute);
-        let d = r * a.centre + self.translation - b.centre;
-        let least = margin + self.doubt;
-        let in_b = d.abs() - b.half - s * a.half;
-        if in_b.max() > least {
-            return true;
-        }
-        let in_a = r.tr_mul(&d).abs() - a.half - s.tr_mul(&b.half);
-        if in_a.max() > least {
-            return true;
-        }
-        let squared = |x: Vector3<f64>| x.map(|x| (x - self.doubt).max(0.0)).norm_squared();
-        if margin > 0.0 && squared(in_b).max(squared(in_a)) > margin * margin {
-            return true;
-        }
-        for i in 0..3 {
-            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
-            for j in 0..3 {
-                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
-                // The axis e_i x R e_j = R[i1, j] e_i2 - R[i2, j] e_i1 is no longer than 1, so its gap is no larger than the distance.
-                let between = (d[i2] * r[(i1, j)] - d[i1] * r[(i2, j)]).abs();
-                let in_b = b.half[i1] * s[(i2, j)] + b.half[i2] * s[(i1, j)];
-                let in_a = a.half[j1] * s[(i, j2)] + a.half[j2] * s[(i, j1)];
-                if between - in_b - in_a > margin + 2.0 * self.doubt {
-                    return true;
-                }
-            }
-        }
-        false
-    }
 }
 
 /// The children of the larger box of a pair, each with the other box.
@@ -162,11 +136,12 @@ pub(super) fn walk_culled<B>(
     skip: impl Fn((u32, u32)) -> bool,
     mut visit: impl FnMut(u32, u32) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
+    let boxes = Boxes::new(relative, a, b, margin);
     stack.clear();
     stack.push((0, 0));
     while let Some(pair) = stack.pop() {
         let (node_a, node_b) = (a.bvh().node(pair.0), b.bvh().node(pair.1));
-        if skip(pair) || relative.boxes_apart(node_a, node_b, margin) {
+        if boxes.are_apart(node_a, node_b) || skip(pair) {
             continue;
         }
         match open(a, b, pair) {

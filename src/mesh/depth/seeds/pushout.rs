@@ -20,8 +20,8 @@ const LEAST_REACH: f64 = 0.01;
 const CLEARANCE: f64 = 1e-3;
 /// What counts as a local minimum, as a sine.
 const TILT: f64 = 0.1;
-/// It is given up beyond this multiple of the best value: the walk that would follow gains about as much.
-const HOPE: f64 = 1.2;
+/// It is given up beyond this multiple of the best value: the walk that would follow hardly gains as much.
+const HOPE: f64 = 1.4;
 /// Step length at most, in diagonals of A.
 const TRUST: f64 = 0.2;
 

@@ -23,7 +23,7 @@ pub struct Plan {
 /// Seeds are farther from each other than this fraction of their value.
 const DIVERSE: f64 = 0.2;
 /// A ray's free pose is found to this fraction of its value.
-const ACCURACY: f64 = 0.02;
+const ACCURACY: f64 = 0.05;
 
 /// A free pose and its value.
 #[derive(Clone, Copy, Debug)]
