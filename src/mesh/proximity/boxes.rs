@@ -88,3 +88,98 @@ impl<'r> Boxes<'r> {
         product(0, 1, 2) || product(1, 2, 0) || product(2, 0, 1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+
+    /// Uniform in (-1, 1).
+    struct Random(u64);
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+        fn vector(&mut self) -> Vector3<f64> {
+            Vector3::new(self.next(), self.next(), self.next())
+        }
+        /// From ten to the `low` to ten to the `high`.
+        fn size(&mut self, low: f64, high: f64) -> f64 {
+            10f64.powf(low + (high - low) * 0.5 * (1.0 + self.next()))
+        }
+    }
+
+    /// A triangle whose box has these half extents.
+    fn spanning(centre: &Vector3<f64>, half: &Vector3<f64>) -> Mesh {
+        let at = |x: f64, y: f64, z: f64| -> [f64; 3] { (centre + half.component_mul(&Vector3::new(x, y, z))).into() };
+        Mesh::new(&[at(-1.0, -1.0, -1.0), at(1.0, 1.0, 1.0), at(1.0, -1.0, 1.0)], &[[0, 1, 2]]).unwrap()
+    }
+
+    /// A point of each that are near each other: no farther apart than the boxes, and nearly as near. By alternating projections.
+    fn upper_distance(relative: &Relative, a: &Node, b: &Node) -> f64 {
+        let into = |p: Vector3<f64>, node: &Node| node.centre + (p - node.centre).sup(&-node.half).inf(&node.half);
+        let mut on_b = b.centre;
+        let mut on_a = on_b;
+        for _ in 0..2000 {
+            let back = relative.place_back(&on_b.into()).coords;
+            on_a = relative.place(&into(back, a).into()).coords;
+            on_b = into(on_a, b);
+        }
+        (on_a - on_b).norm()
+    }
+
+    #[test]
+    fn boxes_that_are_called_apart_are() {
+        let mut random = Random(1);
+        let (mut apart, mut count) = (0, 0);
+        for _ in 0..4000 {
+            // Needles, plates and points; one body up to 1e9 times the other, far from their origins.
+            let sizes = [0, 1].map(|_| random.size(-4.5, 4.5));
+            let mut make = |size: f64| {
+                let half = Vector3::new(random.size(-6.0, 0.0), random.size(-6.0, 0.0), random.size(-6.0, 0.0)) * size;
+                spanning(&(random.vector() * size), &half)
+            };
+            let [a, b] = sizes.map(&mut make);
+            let rotation = if random.next() < -0.8 {
+                UnitQuaternion::identity()
+            } else {
+                UnitQuaternion::from_scaled_axis(random.vector() * 3.0)
+            };
+            let (x, y) = (*a.bvh().root(), *b.bvh().root());
+            // Apart by about nothing along some direction.
+            let u = random.vector().normalize();
+            let v = rotation.inverse() * u;
+            let reach = u.abs().dot(&y.half) + v.abs().dot(&x.half);
+            let gap = random.next() * random.size(-9.0, 0.0) * reach;
+            let centre = y.centre + u * (reach + gap);
+            let pose = Isometry3::from_parts(Translation3::from(centre - rotation * x.centre), rotation);
+            let relative = Relative::new(&pose, &a, &b);
+            for margin in [0.0, 0.01 * reach, reach] {
+                count += 1;
+                if Boxes::new(&relative, &a, &b, margin).are_apart(&x, &y) {
+                    apart += 1;
+                    let distance = upper_distance(&relative, &x, &y);
+                    assert!(distance > margin, "{distance:e} {margin:e} {x:?} {y:?} {pose}");
+                }
+            }
+        }
+        assert!(apart > count / 6, "{apart} of {count}");
+    }
+
+    #[test]
+    fn what_is_far_in_any_unit_is_apart() {
+        for unit in [1e-50, 1e-30, 1.0, 1e30, 1e50] {
+            let body = spanning(&Vector3::zeros(), &Vector3::new(unit, unit, unit));
+            let node = *body.bvh().root();
+            for shift in [2.1, 1e3, 1e9] {
+                let pose = Isometry3::translation(shift * unit, 0.0, 0.0);
+                let relative = Relative::new(&pose, &body, &body);
+                assert!(Boxes::new(&relative, &body, &body, 0.0).are_apart(&node, &node), "{unit:e} {shift:e}");
+                let near = Isometry3::translation(1.9 * unit, 0.0, 0.0);
+                let relative = Relative::new(&near, &body, &body);
+                assert!(!Boxes::new(&relative, &body, &body, 0.0).are_apart(&node, &node), "{unit:e}");
+            }
+        }
+    }
+}
