@@ -51,6 +51,7 @@ use super::{Contact, Counters, Distance, Model, Pair};
 use contact_space::Primitive;
 use nalgebra::Isometry3;
 use search::Search;
+pub use seeds::samples::{ContactSamples, SamplesError};
 pub use tracker::{Budget, DepthTracker};
 
 /// How the boundary of the free space is searched around a pose.
