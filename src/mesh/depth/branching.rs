@@ -1,0 +1,113 @@
+//! The linearised step with unions of constraints (section IV-B.2 of the paper): the least motion to a polyhedral cone that is not convex.
+//!
+//! The cone is a union of convex ones, and each is a program of its own. The first is that of the walk: a plane across every gap, which lies within
+//! the union that the contact is part of. Then clauses that hold the step back try their members in turn, in the place of the planes, and
+//! what brings A nearer to the start is kept.
+
+use super::Scratch;
+use super::contact_space::Primitive;
+use super::search::Search;
+use super::walk::{corrected_step, see_space};
+use crate::mesh::optimize::{Constraint, Twist};
+use nalgebra::Isometry3;
+
+/// Programs beside the first, at most.
+const TRIES: usize = 8;
+/// A clause holds the step back when one of its planes leaves less than this, in clearances.
+const ACTIVE: f64 = 2.0;
+/// The fraction by which a member must be better than the planes.
+const GAIN: f64 = 1e-6;
+
+/// Memory that steps reuse.
+#[derive(Clone, Debug, Default)]
+pub struct Branches {
+    /// Of the clauses, what stands in the place of the planes.
+    chosen: Vec<Option<Primitive>>,
+    choices: Vec<Primitive>,
+    /// Contacts whose planes stand.
+    stands: Vec<bool>,
+}
+
+/// The best motion under the contacts.
+pub fn branched_step(
+    search: &mut Search,
+    pose: &Isometry3<f64>,
+    trust: f64,
+    margin: f64,
+    clearance: f64,
+) -> Option<Twist> {
+    let tilt = see_space(search, pose, trust, margin);
+    let mut branches = std::mem::take(&mut search.scratch.branches);
+    let best = branch(search, &mut branches, pose, trust, tilt, clearance);
+    search.scratch.branches = branches;
+    best
+}
+
+fn branch(
+    search: &mut Search,
+    branches: &mut Branches,
+    pose: &Isometry3<f64>,
+    trust: f64,
+    tilt: f64,
+    clearance: f64,
+) -> Option<Twist> {
+    let Branches { chosen, choices, stands } = branches;
+    chosen.clear();
+    chosen.resize(search.scratch.space.len(), None);
+    let mut best = attempt(search, pose, trust, clearance)?;
+    let mut value = search.distance(&best.applied(pose));
+    let mut tries = TRIES;
+    for clause in 0..chosen.len() {
+        let motion = best.applied(pose) * pose.inverse();
+        let space = &search.scratch.space;
+        let is_active =
+            |part: &(usize, usize)| part.0 == clause && space.planes()[part.1].gap(&motion) < ACTIVE * clearance;
+        if !space.parts().iter().any(is_active) {
+            continue;
+        }
+        // What is out of reach makes the program contradict itself.
+        let is_near = |member: &&Primitive| member.gap(&Isometry3::identity()) > -trust;
+        choices.clear();
+        choices.extend(space.choices(clause, tilt).filter(is_near).take(tries));
+        tries -= choices.len();
+        let mut kept = None;
+        for choice in choices.iter() {
+            chosen[clause] = Some(*choice);
+            choose(search.scratch, chosen, stands);
+            if let Some(twist) = attempt(search, pose, trust, clearance) {
+                let reached = search.distance(&twist.applied(pose));
+                if reached < value * (1.0 - GAIN) {
+                    (best, value, kept) = (twist, reached, Some(*choice));
+                }
+            }
+        }
+        chosen[clause] = kept;
+    }
+    Some(best)
+}
+
+/// Notes the chosen members, and the planes of contacts that are part of other clauses too.
+fn choose(scratch: &mut Scratch, chosen: &[Option<Primitive>], stands: &mut Vec<bool>) {
+    let Scratch { space, primitives, .. } = scratch;
+    stands.clear();
+    stands.resize(space.planes().len(), false);
+    for &(clause, contact) in space.parts() {
+        stands[contact] |= chosen[clause].is_none();
+    }
+    primitives.clear();
+    primitives.extend(chosen.iter().flatten());
+    primitives.extend(space.planes().iter().zip(stands.iter()).filter(|(_, stands)| **stands).map(|(plane, _)| plane));
+}
+
+/// The best motion under the noted primitives.
+fn attempt(search: &mut Search, pose: &Isometry3<f64>, trust: f64, clearance: f64) -> Option<Twist> {
+    let identity = Isometry3::identity();
+    let Scratch { primitives, constraints, .. } = &mut *search.scratch;
+    constraints.clear();
+    constraints.extend(primitives.iter().map(|p| Constraint {
+        point: p.on_a,
+        normal: p.normal,
+        gap: p.gap(&identity) - clearance,
+    }));
+    corrected_step(search, pose, trust, clearance)
+}
