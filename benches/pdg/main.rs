@@ -6,7 +6,7 @@
 //! ```
 //!
 //! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's variants:
-//! sampling, and the K nearest contact samples as seeds. The solid test and the distance against FCL's on the same poses. Writes
+//! unions of constraints, sampling, and the K nearest contact samples as seeds. The solid test and the distance against FCL's on the same poses. Writes
 //! `pdg.csv`, `proximity.csv` and a picture of error against time per metric.
 
 // Modules of tests and of the program are used in part, and their own tests run elsewhere.
@@ -32,6 +32,8 @@ mod plot;
 mod read;
 mod report;
 mod scenes;
+#[path = "../../examples/pdg/seeds.rs"]
+mod seeds;
 #[allow(dead_code, unused_imports)]
 #[path = "../../examples/pdg/table.rs"]
 mod table;

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver, Effort, Pair, Walk};
 
 use crate::answer::{self, Row};
-use crate::bodies;
 use crate::input::{Kind, Query};
 use crate::scenes::Scenes;
+use crate::seeds;
 
 /// Where walks begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,31 +44,29 @@ const fn beside(name: &'static str, walk: Walk, seeds: Seeds) -> Variant {
     Variant { name, effort: Effort::Default, walk, seeds, everywhere: false, is_effort: false }
 }
 
-pub const VARIANTS: [Variant; 6] = [
+pub const VARIANTS: [Variant; 7] = [
     effort("fast", Effort::Fast),
     Variant { everywhere: true, ..effort(DEFAULT, Effort::Default) },
     effort("heavy", Effort::Heavy),
-    // Section IV-B.1 of the paper.
+    // Sections IV-A and IV-B.2 of the paper.
+    beside("branching", Walk::Branching, Seeds::Own),
+    // Section IV-B.1.
     beside("sampling", Walk::Sampling, Seeds::Own),
     // Section IV-D.
     beside("nearest", Walk::Linearised, Seeds::Samples),
     beside("nearest+", Walk::Linearised, Seeds::Both),
 ];
 
-/// Contact samples of a pair, how many of them are seeds, and how far from each other these are, in diagonals of A.
+/// Contact samples of a pair.
 const SAMPLES: usize = 500;
-const NEAREST: usize = 6;
-const APART: f64 = 0.1;
 
 impl Variant {
     /// Asks. Looking for the nearest samples counts; making them does not.
     fn ask(self, solver: &mut DepthSolver, query: &Query, kind: Kind, samples: &ContactSamples) -> Row {
         let begin = Instant::now();
-        let near = match bodies::metric(solver.a(), kind) {
-            Some(metric) if self.seeds != Seeds::Own => {
-                samples.nearest(metric, &query.pose, NEAREST, APART * solver.a().mesh().diagonal())
-            }
-            _ => Vec::new(),
+        let near = match self.seeds {
+            Seeds::Own => Vec::new(),
+            Seeds::Samples | Seeds::Both => seeds::nearest(samples, solver.a(), kind, &query.pose),
         };
         let search = begin.elapsed().as_nanos() as u64;
         let own = self.seeds != Seeds::Samples;

@@ -3,6 +3,9 @@
 //! The cone is a union of convex ones, and each is a program of its own. The first is that of the walk: a plane across every gap, which lies within
 //! the union that the contact is part of. Then clauses that hold the step back try their members in turn, in the place of the planes, and
 //! what brings A nearer to the start is kept.
+//!
+//! A plane that a step ends at is another one at the next step, so the walk goes around a corner without this too, and what branching gains in
+//! a step is hardly ever seen at the end.
 
 use super::Scratch;
 use super::contact_space::Primitive;

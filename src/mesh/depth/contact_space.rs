@@ -13,24 +13,26 @@
 //!
 //! # Unions and intersections
 //!
-//! Where a corner meets a corner or an edge, no single primitive tells. The tangent cones there, with their tips at a' and b, are apart when a
-//! plane is between them,
+//! Where a corner meets a corner or an edge, no single primitive tells. The tangent cones there, with their tips at a' and b, are apart
+//! when a plane is between them,
 //!
 //! ```text
-//! n.(a' - b) >= 0   for some n of N = N_B(b) and -R N_A(a), the directions in the normal cones of both features
+//! n.(a' - b) >= 0   for some n in N = N_B(b) and -R N_A(a), the directions in the normal cones of both features
 //! ```
 //!
-//! and if both cones are convex so is N. A linear function is not negative somewhere on N when it is not negative on one of its edges, which are the
-//! normals of faces of B, those of faces of A, and the products of edges: the primitives that the contact decomposes into. So a contact
-//! of convex features is the *union* of those primitives whose normals lie in N. A normal belongs to N after a motion or it does not; when none does, the
-//! bodies turn about something else, and what remains to be asked is whether the corner of each is outside of the other.
+//! and N is a convex cone if the features are convex. A linear function is nowhere positive on N unless it is on one of the edges of N, which are
+//! normals of faces of B, normals of faces of A, and products of edges: the primitives that the contact decomposes into. So a contact of
+//! convex features is the *union* of the primitives whose normals lie in N, which is asked after the motion. When none does, the bodies turn about something
+//! else, and each one's corner must be outside of the other.
 //!
-//! A reentrant feature has no normal cone. What meets it meets faces, edges and corners beside it, each at a local minimum of its own, and those are
-//! *intersected*, as contacts at different places are. So is what meets a corner at which convex and reentrant edges end; of the paper's operators this
-//! takes the intersection there too. Together, a [`ContactSpace`]: all of its clauses, of each any member.
+//! A reentrant feature has no normal cone. What meets it meets faces, edges and corners beside it, each at a local minimum of its own, and
+//! these are *intersected*, as contacts at different places are. A corner at which convex and reentrant edges end is the intersection of what its
+//! convex edges say.
 //!
-//! Contacts know features by the nearest points. A corner above a face, near a convex edge of it, will be beyond that edge after a
-//! motion; so features within a length of the nearest point take the face's place.
+//! Contacts know features by the nearest points. A corner above a face, near a convex edge of it, is beyond that edge after a motion, so
+//! convex features within a length of the nearest point take the face's place. Cones are true only as far as the features go: where they hardly
+//! open, as of a face that rests on a face, other corners decide. There the planes across the gaps of all contacts are true, which elsewhere allow too
+//! little. So a clause of the [`ContactSpace`] holds where its planes do, or its union.
 
 use crate::mesh::{Contact, EdgeKind, Feature, Mesh};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -293,8 +295,7 @@ impl ContactSpace {
 }
 
 impl Clause {
-    /// Whether a direction from B to A lies in both normal cones after a motion, but for an angle of this
-    /// sine.
+    /// Whether a direction from B to A lies in both normal cones after a motion, but for an angle of this sine.
     fn admits(&self, directions: &[Vector3<f64>], normal: &Vector3<f64>, motion: &Isometry3<f64>, blur: f64) -> bool {
         let in_a = motion.rotation.inverse_transform_vector(normal);
         directions[self.around_a.clone()].iter().all(|d| d.dot(&in_a) >= -blur)
