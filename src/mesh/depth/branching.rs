@@ -57,7 +57,8 @@ fn branch(
     let Branches { chosen, choices, stands } = branches;
     chosen.clear();
     chosen.resize(search.scratch.space.len(), None);
-    let mut best = attempt(search, pose, trust, clearance)?;
+    let along_planes = attempt(search, pose, trust, clearance)?;
+    let mut best = along_planes;
     let mut value = search.distance(&best.applied(pose));
     let mut tries = TRIES;
     for clause in 0..chosen.len() {
@@ -86,7 +87,9 @@ fn branch(
         }
         chosen[clause] = kept;
     }
-    Some(best)
+    // Planes stand for corners that are farther away, too.
+    let is_branch = chosen.iter().any(Option::is_some);
+    Some(if is_branch && search.pair.collides(&best.applied(pose)) { along_planes } else { best })
 }
 
 /// Notes the chosen members, and the planes of contacts that are part of other clauses too.
@@ -113,4 +116,43 @@ fn attempt(search: &mut Search, pose: &Isometry3<f64>, trust: f64, clearance: f6
         gap: p.gap(&identity) - clearance,
     }));
     corrected_step(search, pose, trust, clearance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{DepthOptions, DepthSolver, Model};
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    /// A tip has entered a cube through an edge. The way back is along a ridge: to the plane across the gap there is nothing nearer, but
+    /// either face is.
+    #[test]
+    fn a_ridge_is_left_to_either_side() {
+        let tip = [[0.0, 0.0, 0.0], [0.2, 0.0, 1.0], [-0.1, 0.17, 1.0], [-0.1, -0.17, 1.0]];
+        let needle = Model::new(&tip, &[[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]).unwrap();
+        let corners: Vec<_> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|bit| f64::from(bit) - 0.5)).collect();
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles: Vec<_> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let cube = Model::new(&corners, &triangles).unwrap();
+        assert!(needle.is_solid() && cube.is_solid());
+
+        let out = Vector3::new(1.0, 0.0, 1.0);
+        let upright = UnitQuaternion::rotation_between(&Vector3::z(), &out).unwrap();
+        let at = |x: f64| Isometry3::from_parts([0.5 + x, 0.05, 0.5 + x].into(), upright);
+        let (start, pose) = (at(-0.03), at(1e-4));
+        let mut solver = DepthSolver::new(&needle, &cube);
+        assert!(solver.pair().collides(&start) && !solver.pair().collides(&pose));
+
+        let options = DepthOptions::default();
+        for metric in [needle.disp() as &dyn crate::mesh::metric::Metric, needle.sigma().unwrap()] {
+            let mut search = Search::new(&mut solver, &start, metric, &options, None);
+            let (trust, margin, clearance) = (0.1, 0.01, 1e-5);
+            see_space(&mut search, &pose, trust, margin);
+            let planes = attempt(&mut search, &pose, trust, clearance).unwrap().applied(&pose);
+            let branched = branched_step(&mut search, &pose, trust, margin, clearance).unwrap().applied(&pose);
+            let (ridge, side) = (search.distance(&planes), search.distance(&branched));
+            assert!(!search.pair.collides(&branched));
+            assert!(side < 0.8 * ridge, "{side} {ridge}");
+        }
+    }
 }

@@ -12,8 +12,8 @@
 //!
 //! # The search
 //!
-//! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, near stored contact
-//!   configurations, or given by the caller.
+//! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, or given by the caller,
+//!   who may take them from stored [`ContactSamples`].
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what contacts say of motions near by; `sampling` and `branching` are the walk's other kinds of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
@@ -62,7 +62,8 @@ pub enum Walk {
     /// Contacts as linear constraints of a convex program.
     #[default]
     Linearised,
-    /// The same with unions of constraints where convex corners meet corners or edges, each member in turn (sections IV-A and IV-B.2 of the paper).
+    /// The same with unions of constraints where convex corners meet corners or edges, each member in turn (sections IV-A and IV-B.2 of
+    /// the paper). It finds what the linearised walk finds, and takes longer.
     Branching,
     /// Random samples on the contacts (section IV-B.1 of the paper).
     Sampling,
@@ -85,7 +86,8 @@ pub struct DepthOptions<'a> {
     pub rays: bool,
     /// Whether pushing out what penetrates is a seed.
     pub push_out: bool,
-    /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess.
+    /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, the nearest of some
+    /// [`ContactSamples`], a guess.
     pub poses: &'a [Isometry3<f64>],
 }
 
