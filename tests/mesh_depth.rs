@@ -163,7 +163,7 @@ fn the_same_query_has_the_same_answer() {
 }
 
 #[test]
-fn more_effort_is_not_worse_by_much_and_sampling_finds_a_depth_too() {
+fn more_effort_is_not_worse_by_much_and_other_walks_find_a_depth_too() {
     let (a, b) = (model(&l_shape()), model(&torus_knot(48, 8, 0.25)));
     let pose = Isometry3::translation(-0.9, -0.7, 0.1);
     let ask = |effort, walk| {
@@ -171,7 +171,8 @@ fn more_effort_is_not_worse_by_much_and_sampling_finds_a_depth_too() {
     };
     let heavy = ask(Effort::Heavy, Walk::Linearised);
     assert!(ask(Effort::Default, Walk::Linearised) >= heavy * 0.999);
-    for (effort, walk, worse) in [(Effort::Fast, Walk::Linearised, 1.5), (Effort::Default, Walk::Sampling, 1.2)] {
+    let others = [(Walk::Branching, 1.2), (Walk::Sampling, 1.2)].map(|(walk, worse)| (Effort::Default, walk, worse));
+    for (effort, walk, worse) in [(Effort::Fast, Walk::Linearised, 1.5)].into_iter().chain(others) {
         let value = ask(effort, walk);
         assert!(value <= heavy * worse, "{value} {heavy}");
     }

@@ -5,8 +5,9 @@
 //! cargo bench --features std --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
 //! ```
 //!
-//! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's sampling; the
-//! solid test and the distance against FCL's on the same poses. Writes `pdg.csv`, `proximity.csv` and a picture of error against time per metric.
+//! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's variants:
+//! unions of constraints, sampling, and the K nearest contact samples as seeds. The solid test and the distance against FCL's on the same poses. Writes
+//! `pdg.csv`, `proximity.csv` and a picture of error against time per metric.
 
 // Modules of tests and of the program are used in part, and their own tests run elsewhere.
 #[allow(dead_code, unused_imports)]
@@ -31,6 +32,8 @@ mod plot;
 mod read;
 mod report;
 mod scenes;
+#[path = "../../examples/pdg/seeds.rs"]
+mod seeds;
 #[allow(dead_code, unused_imports)]
 #[path = "../../examples/pdg/table.rs"]
 mod table;

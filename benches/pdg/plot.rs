@@ -6,7 +6,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::input::Kind;
-use crate::measure::{Cold, VARIANTS};
+use crate::measure::{Cold, VARIANTS, Variant};
 use crate::report::{excess, milliseconds};
 use crate::table::quantile;
 
@@ -22,16 +22,16 @@ pub fn all(cold: &[Cold], groups: &[&str], folder: &Path) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// Name, time and error of every variant that was asked.
-fn points(cold: &[Cold], group: &str, kind: Kind) -> Vec<(&'static str, f64, f64)> {
-    let of = |variant: &'static str| {
-        let is = |c: &&Cold| c.variant == variant && c.row.group == group && c.row.kind == kind;
+/// Time and error of every variant that was asked.
+fn points(cold: &[Cold], group: &str, kind: Kind) -> Vec<(Variant, f64, f64)> {
+    let of = |variant: Variant| {
+        let is = |c: &&Cold| c.variant == variant.name && c.row.group == group && c.row.kind == kind;
         let of: Vec<&Cold> = cold.iter().filter(is).collect();
         let errors: Vec<f64> = of.iter().filter_map(|c| excess(c)).collect();
         let error = quantile(&errors, 0.9).max(LEAST);
         (!errors.is_empty()).then(|| (variant, milliseconds(of.iter().copied(), 0.5), error))
     };
-    VARIANTS.iter().filter_map(|v| of(v.name)).collect()
+    VARIANTS.into_iter().filter_map(of).collect()
 }
 
 fn draw(cold: &[Cold], groups: &[&str], kind: Kind, file: &Path) -> Result<(), Box<dyn Error>> {
@@ -54,15 +54,16 @@ fn draw(cold: &[Cold], groups: &[&str], kind: Kind, file: &Path) -> Result<(), B
         // (Yellow, the third, is hard to see on white.)
         let color = Palette99::pick(if i < 2 { i } else { i + 1 }).to_rgba();
         let points = points(cold, group, kind);
-        // The efforts are a curve; the paper's sampling stands alone.
-        let curve = points.iter().filter(|p| p.0 != "sampling").map(|p| (p.1, p.2));
+        // The efforts are a curve; the paper's variants stand alone.
+        let curve = points.iter().filter(|p| p.0.is_effort).map(|p| (p.1, p.2));
         chart
             .draw_series(LineSeries::new(curve, color.stroke_width(2)))?
             .label(*group)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color.stroke_width(2)));
-        for (name, time, error) in points {
+        for (variant, time, error) in points {
             chart.draw_series([Circle::new((time, error), 4, color.filled())])?;
-            let label = Text::new(name, (time * 1.08, error * 1.1), ("sans-serif", 13).into_font().color(&color));
+            let label =
+                Text::new(variant.name, (time * 1.08, error * 1.1), ("sans-serif", 13).into_font().color(&color));
             chart.draw_series([label])?;
         }
     }

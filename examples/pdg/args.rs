@@ -15,6 +15,7 @@ options:
   --metric disp|sigma          the largest displacement, or the root mean square one (the root of the object norm); else both
   --effort fast|default|heavy  how long to search
   --seed N                     number of the random sequence, 0 otherwise
+  --samples N                  draw N contact samples of every pair first; the 6 nearest to a query are seeds too
   --csv                        nothing but CSV on the standard output
   --picture DIR                DIR/QUERY_METRIC.svg: before, on the way, after";
 
@@ -36,6 +37,8 @@ pub struct Request {
     pub kinds: Vec<Kind>,
     pub effort: Effort,
     pub seed: u64,
+    /// Contact samples of a pair.
+    pub samples: usize,
     pub csv: bool,
     pub picture: Option<PathBuf>,
 }
@@ -46,7 +49,7 @@ impl Request {
         let (mut queries, mut table1, mut meshes, mut poses) = (None, false, Vec::new(), Vec::new());
         let nothing = Source::Table1(PathBuf::new());
         let (kinds, effort) = (Kind::BOTH.to_vec(), Effort::Default);
-        let mut request = Request { source: nothing, kinds, effort, seed: 0, csv: false, picture: None };
+        let mut request = Request { source: nothing, kinds, effort, seed: 0, samples: 0, csv: false, picture: None };
         while let Some(argument) = arguments.next() {
             let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
             match argument.as_str() {
@@ -56,6 +59,9 @@ impl Request {
                 "--picture" => request.picture = Some(value()?.into()),
                 "--pose" => poses.push(pose(&value()?)?),
                 "--seed" => request.seed = value()?.parse().map_err(|_| "--seed is not a whole number from 0 up")?,
+                "--samples" => {
+                    request.samples = value()?.parse().map_err(|_| "--samples is not a whole number from 0 up")?;
+                }
                 "--metric" => request.kinds = vec![metric(&value()?)?],
                 "--effort" => request.effort = effort_named(&value()?)?,
                 _ if argument.starts_with("--") => return Err(format!("{argument} is no option")),
@@ -109,10 +115,12 @@ mod tests {
 
     #[test]
     fn what_may_be_asked() {
-        let request = parse("--queries q.json --metric sigma --effort heavy --csv --seed 7 --picture out").unwrap();
+        let request =
+            parse("--queries q.json --metric sigma --effort heavy --csv --seed 7 --samples 50 --picture out").unwrap();
         assert_eq!(request.source, Source::File("q.json".into()));
         assert_eq!((request.kinds.as_slice(), request.effort), (&[Kind::Sigma][..], Effort::Heavy));
-        assert_eq!((request.csv, request.seed, request.picture), (true, 7, Some("out".into())));
+        assert_eq!((request.csv, request.seed, request.samples), (true, 7, 50));
+        assert_eq!(request.picture, Some("out".into()));
 
         let request = parse("a.obj b.stl --pose 0,-1,0,0,1,2,3 --pose -1,0,0,0,0,0,0").unwrap();
         let Source::Pair(files, poses) = request.source else { panic!() };
@@ -138,6 +146,7 @@ mod tests {
             "--queries q --metric l2",
             "--queries q --effort",
             "--queries q --seed -1",
+            "--queries q --samples many",
             "--queries q --what",
             "--table1 a b",
         ] {

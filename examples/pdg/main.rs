@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
-use qdist::mesh::{DepthOptions, DepthSolver};
+use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver};
 
 mod answer;
 mod args;
@@ -23,6 +23,7 @@ mod bodies;
 mod input;
 mod picture;
 mod read;
+mod seeds;
 mod table;
 mod table1;
 mod words;
@@ -89,14 +90,22 @@ fn answer_all(
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }
     let options = DepthOptions { effort: request.effort, seed: request.seed, ..DepthOptions::default() };
-    let mut solvers: HashMap<_, DepthSolver> = HashMap::new();
+    let mut solvers: HashMap<_, (DepthSolver, ContactSamples)> = HashMap::new();
     let mut rows: Vec<Row> = Vec::new();
     for query in queries {
-        let solver = solvers
-            .entry((&query.a, &query.b))
-            .or_insert_with(|| DepthSolver::new(bodies.get(&query.a), bodies.get(&query.b)));
+        let (solver, samples) = solvers.entry((&query.a, &query.b)).or_insert_with(|| {
+            let (a, b) = (bodies.get(&query.a), bodies.get(&query.b));
+            let mut tell = |made: usize| {
+                bar.say(&format!("{}: {made} contact samples", query.id));
+                true
+            };
+            let samples = ContactSamples::new(a, b, request.samples, request.seed, Some(&mut tell));
+            (DepthSolver::new(a, b), samples)
+        });
         for &kind in &request.kinds {
             let name = format!("{} {}", query.id, kind.name());
+            let poses = seeds::nearest(samples, solver.a(), kind, &query.pose);
+            let options = DepthOptions { poses: &poses, ..options };
             let row = bar.during(rows.len(), &name, |watch| answer::ask(solver, query, kind, &options, watch));
             if let Some(folder) = &request.picture {
                 picture::draw(solver, query, &row, &options, folder)?;

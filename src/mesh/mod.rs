@@ -58,7 +58,10 @@ mod surface;
 pub mod topology;
 
 pub use check::Report;
-pub use depth::{Budget, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Outcome, Progress, Walk, Watch};
+pub use depth::{
+    Budget, ContactSamples, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Outcome, Progress,
+    SamplesError, Walk, Watch,
+};
 pub use model::{Model, ModelError};
 pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};
 pub use surface::{MAX_COORDINATE, Mesh, MeshError};

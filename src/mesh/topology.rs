@@ -182,6 +182,12 @@ impl Topology {
         self.face_edges[face as usize]
     }
 
+    /// The edge of two vertices, if there is one. O(log n).
+    pub fn edge_between(&self, v: u32, w: u32) -> Option<u32> {
+        let ends = [v.min(w), v.max(w)];
+        self.edges.binary_search_by_key(&ends, |edge| edge.vertices).ok().map(|edge| edge as u32)
+    }
+
     /// The vertices that share an edge with this one, ascending.
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
         self.neighbours.get(vertex)

@@ -12,10 +12,10 @@
 //!
 //! # The search
 //!
-//! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, near stored contact
-//!   configurations, or given by the caller.
+//! * *Seeds* (`seeds`) are free poses found from afar: along rays in configuration space, by pushing out what penetrates, or given by the caller,
+//!   who may take them from stored [`ContactSamples`].
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
-//! * `contact_space` knows what a contact says of motions near by, and `sampling` is the walk's other kind of step.
+//! * `contact_space` knows what contacts say of motions near by; `sampling` and `branching` are the walk's other kinds of step.
 //! * `search` keeps the best pose and the budget, and says when to stop.
 //! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
@@ -35,6 +35,7 @@
 //! # Ok::<(), qdist::mesh::ModelError>(())
 //! ```
 
+mod branching;
 mod contact_space;
 mod random;
 mod sampling;
@@ -49,9 +50,11 @@ pub use super::certificate::Effort;
 use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};
-use contact_space::Primitive;
+use branching::Branches;
+use contact_space::{ContactSpace, Primitive};
 use nalgebra::Isometry3;
 use search::Search;
+pub use seeds::samples::{ContactSamples, SamplesError};
 pub use tracker::{Budget, DepthTracker};
 
 /// How the boundary of the free space is searched around a pose.
@@ -60,6 +63,9 @@ pub enum Walk {
     /// Contacts as linear constraints of a convex program.
     #[default]
     Linearised,
+    /// The same with unions of constraints where convex corners meet corners or edges, each member in turn (sections IV-A and IV-B.2 of
+    /// the paper). It finds what the linearised walk finds, and takes longer.
+    Branching,
     /// Random samples on the contacts (section IV-B.1 of the paper).
     Sampling,
 }
@@ -81,7 +87,8 @@ pub struct DepthOptions<'a> {
     pub rays: bool,
     /// Whether pushing out what penetrates is a seed.
     pub push_out: bool,
-    /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess.
+    /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, the nearest of some
+    /// [`ContactSamples`], a guess.
     pub poses: &'a [Isometry3<f64>],
 }
 
@@ -173,6 +180,8 @@ pub struct DepthSolver<'m> {
 struct Scratch {
     contacts: Vec<Contact>,
     primitives: Vec<Primitive>,
+    space: ContactSpace,
+    branches: Branches,
     constraints: Vec<Constraint>,
     memory: StepMemory,
 }
@@ -188,6 +197,8 @@ impl<'m> DepthSolver<'m> {
             scratch: Scratch {
                 contacts: Vec::new(),
                 primitives: Vec::new(),
+                space: ContactSpace::default(),
+                branches: Branches::default(),
                 constraints: Vec::new(),
                 memory: StepMemory::new(walk::CONTACTS),
             },

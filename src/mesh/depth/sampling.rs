@@ -1,11 +1,11 @@
 //! The paper's own search of the local contact space (section IV-B.1): random samples on the contacts.
 //!
 //! A sample turns A by a random small rotation. That makes every primitive constraint linear in the translation, n_i.t = c_i,
-//! and a random translation is projected onto the planes of up to three contacts, so that the sample touches there. Samples that
-//! violate another constraint are discarded; of the others, the one nearest to the start is the step.
+//! and a random translation is projected onto the planes of up to three contacts, so that the sample touches there. Samples
+//! outside of the contact space, with its unions and intersections, are discarded; of the others, the one nearest to the start is the step.
 
 use super::search::Search;
-use super::walk::see;
+use super::walk::see_space;
 use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -20,7 +20,7 @@ pub fn sampled_step(
     margin: f64,
     clearance: f64,
 ) -> Option<Twist> {
-    see(search, pose, trust, margin);
+    see_space(search, pose, trust, margin);
     let (about, radius) = (pose * search.metric.frame().centre, search.metric.frame().radius);
     let back = pose.inverse();
     let mut best = None;
@@ -35,7 +35,7 @@ pub fn sampled_step(
         let moved = twist.applied(pose);
         let motion = moved * back;
         let value = search.distance(&moved);
-        if value < least && search.scratch.primitives.iter().all(|p| p.gap(&motion) >= 0.5 * clearance) {
+        if value < least && search.scratch.space.value(&motion) >= 0.5 * clearance {
             least = value;
             best = Some(twist);
         }
@@ -45,7 +45,8 @@ pub fn sampled_step(
 
 /// Translates so that up to three random contacts have the gap that remains.
 fn project(search: &mut Search, twist: &mut Twist, pose: &Isometry3<f64>, back: &Isometry3<f64>, clearance: f64) {
-    let count = search.scratch.primitives.len();
+    let (planes, members) = (search.scratch.space.planes().len(), search.scratch.space.members().len());
+    let count = planes + members;
     if count == 0 {
         return;
     }
@@ -55,7 +56,8 @@ fn project(search: &mut Search, twist: &mut Twist, pose: &Isometry3<f64>, back: 
     let mut shift = Vector3::zeros();
     let chosen = search.random.below(4).min(count);
     for k in 0..chosen {
-        let p = search.scratch.primitives[search.random.below(count)];
+        let (pick, space) = (search.random.below(count), &search.scratch.space);
+        let p = space.planes().get(pick).unwrap_or_else(|| &space.members()[pick - planes]);
         let normal = p.normal_after(&motion);
         let rest = normal - basis * basis.tr_mul(&normal);
         let length = rest.norm();

@@ -15,6 +15,7 @@
 //! and second-order correction leave out, so it shrinks with the trust region too: both vanish as the walk converges. The margin stays: contacts that
 //! are out of sight would stop the next step.
 
+use super::branching::branched_step;
 use super::contact_space::Primitive;
 use super::sampling::sampled_step;
 use super::search::Search;
@@ -146,6 +147,7 @@ fn step(
 ) -> Option<(Isometry3<f64>, f64, f64)> {
     let found = match search.options.walk {
         Walk::Linearised => linear_step(search, pose, trust, margin, clearance, freedom)?,
+        Walk::Branching => branched_step(search, pose, trust, margin, clearance)?,
         Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
     };
     let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
@@ -174,8 +176,17 @@ pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) 
     primitives.extend(contacts.iter().map(|c| Primitive::new(c, a, b, pose)));
 }
 
-/// The best motion under the contacts. What the linearisation leaves out is looked up in the primitive constraints themselves, and
-/// the program is solved again with that much less room (a second-order correction).
+/// The same with what they say of unions. Returns the sine of the angle that A may turn by.
+pub fn see_space(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) -> f64 {
+    see(search, pose, trust, margin);
+    let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
+    let meshes = (search.pair.a(), search.pair.b());
+    let Scratch { contacts, space, .. } = &mut *search.scratch;
+    space.set(contacts, meshes, pose, margin, tilt);
+    tilt
+}
+
+/// The best motion under the contacts, each as the plane across its gap.
 fn linear_step(
     search: &mut Search,
     pose: &Isometry3<f64>,
@@ -186,17 +197,30 @@ fn linear_step(
 ) -> Option<Twist> {
     let turns = freedom == Freedom::Motion;
     see(search, pose, if turns { trust } else { 0.0 }, margin);
-    let Scratch { contacts, primitives, constraints, memory } = &mut *search.scratch;
-    constraints.clear();
     let translation = Translation { frame: *search.metric.frame() };
-    let metric: &dyn Metric = if turns { search.metric } else { &translation };
+    let metric = if turns { search.metric } else { &translation };
     // At the centre a contact has no moment.
     let centre = pose * translation.frame.centre;
+    let Scratch { contacts, constraints, .. } = &mut *search.scratch;
+    constraints.clear();
     constraints.extend(contacts.iter().map(|c| Constraint {
         point: if turns { c.on_a } else { centre },
         normal: c.normal,
         gap: c.gap - clearance,
     }));
+    corrected_step(search, metric, pose, trust, clearance)
+}
+
+/// The best motion under the noted constraints. What the linearisation leaves out is looked up in the primitive constraints
+/// themselves, and the program is solved again with that much less room (a second-order correction).
+pub fn corrected_step(
+    search: &mut Search,
+    metric: &dyn Metric,
+    pose: &Isometry3<f64>,
+    trust: f64,
+    clearance: f64,
+) -> Option<Twist> {
+    let Scratch { primitives, constraints, memory, .. } = &mut *search.scratch;
     let options = StepOptions { trust, tolerance: 1e-3 };
     let back = pose.inverse();
     let mut twist = metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;

@@ -2,3 +2,4 @@
 
 pub(super) mod pushout;
 pub(super) mod rays;
+pub(super) mod samples;
