@@ -67,7 +67,8 @@ impl ContactSamples {
     /// Makes so many samples, from the random sequence of this number: the same bodies, count and seed give the same samples, and a larger
     /// count the same with others behind. `watch` is told how many there are, after each; false stops, and what there is is kept.
     ///
-    /// All are free by the solid test, and touch to 1e-6 of A's diagonal. Cost: some 30 collision queries each.
+    /// All are free by the solid test, and touch to 1e-6 of A's diagonal. There are fewer only where no free pose can be written down. Cost: some 30
+    /// collision queries each, a tenth of a millisecond to half of one for meshes of 3,000 triangles.
     pub fn new(
         a: &Model,
         b: &Model,
@@ -111,7 +112,7 @@ impl ContactSamples {
         &self.poses
     }
 
-    /// Whether they were made for the bodies of this solver.
+    /// Whether they were made for the bodies of this solver. O(n) in vertices and triangles.
     pub fn fit(&self, solver: &DepthSolver) -> bool {
         self.pair == [solver.a(), solver.b()].map(|m| fingerprint(m.mesh()))
     }
