@@ -1,7 +1,8 @@
 //! The state of one query: the best pose so far, the budget, and the order of things.
 
 use super::random::Random;
-use super::seeds::{pushout, rays};
+use super::seeds::pushout;
+use super::seeds::rays::{self, Seed};
 use super::walk::{Bounds, CONTACTS, ITERATIONS, TRUST, follow, walk};
 use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
 use crate::mesh::certificate::Certifier;
@@ -39,6 +40,8 @@ pub(super) struct Search<'s, 'm, 'w> {
 /// What an effort means.
 struct Plan {
     rays: rays::Plan,
+    /// Rounds of rays and walks; all but the first only where the bracket leaves room.
+    rounds: usize,
     /// Pairs of triangles that pushing out may look at in one query.
     work: usize,
     /// The least gain of an iteration of the walks.
@@ -65,9 +68,15 @@ fn plan(effort: Effort, a: &Model, b: &Model) -> Plan {
         seeds: times(seeds),
     };
     match effort {
-        Effort::Fast => Plan { rays: rays(20, 12, 1.1, 2), work: 4_000, coarse: 3e-2, gain: 1e-3, hope: 0.97 },
-        Effort::Default => Plan { rays: rays(32, 64, 1.3, 5), work: 8_000, coarse: 3e-2, gain: 1e-4, hope: 0.95 },
-        Effort::Heavy => Plan { rays: rays(128, 512, 1.6, 40), work: 200_000, coarse: 1e-4, gain: 1e-5, hope: 1.2 },
+        Effort::Fast => {
+            Plan { rays: rays(20, 12, 1.1, 2), rounds: 1, work: 4_000, coarse: 3e-2, gain: 1e-3, hope: 0.97 }
+        }
+        Effort::Default => {
+            Plan { rays: rays(32, 64, 1.3, 5), rounds: 4, work: 8_000, coarse: 3e-2, gain: 1e-4, hope: 0.95 }
+        }
+        Effort::Heavy => {
+            Plan { rays: rays(128, 512, 1.6, 40), rounds: 1, work: 200_000, coarse: 1e-4, gain: 1e-5, hope: 1.2 }
+        }
     }
 }
 
@@ -123,14 +132,8 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         for pose in self.options.poses {
             self.walk_from(pose, &plan);
         }
-        let seeds = match escape {
-            Some(escape) if self.options.rays => rays::cast(&mut self, &plan.rays, &escape),
-            _ => escape.into_iter().collect(),
-        };
-        for (k, seed) in seeds.iter().enumerate() {
-            self.fraction = (k as f64 + 1.0) / (seeds.len() as f64 + 2.0);
-            let hopeless = self.upper * plan.hope;
-            walk(&mut self, &seed.pose, &Bounds { gain: plan.coarse, hopeless });
+        if let Some(seed) = escape {
+            self.explore(&plan, 0, &seed);
         }
         // Dear, and of use where rays have missed a narrow passage.
         if self.options.push_out
@@ -139,6 +142,12 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             && let Some(seed) = pushout::push_out(&mut self, plan.work)
         {
             walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+        }
+        for round in 1..plan.rounds {
+            if self.options.rays && self.may_be_much_less() {
+                let best = Seed { pose: self.pose, value: self.upper };
+                self.explore(&plan, round, &best);
+            }
         }
         self.refine(plan.gain);
         self.polish();
@@ -149,9 +158,21 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     fn may_be_much_less(&self) -> bool {
         let near = match self.metric.certificate() {
             Certificate::Disp => 1.15,
-            Certificate::SqrtSigma | Certificate::None => 1.5,
+            Certificate::SqrtSigma | Certificate::None => 1.3,
         };
         self.upper > near * self.lower
+    }
+
+    /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
+    fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
+        let seeds = if self.options.rays { rays::cast(self, &plan.rays, known) } else { vec![*known] };
+        // The best pose is refined in the end.
+        let seeds = seeds.iter().filter(|seed| round == 0 || seed.pose != known.pose);
+        for (k, seed) in seeds.enumerate() {
+            self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
+            let hopeless = self.upper * plan.hope;
+            walk(self, &seed.pose, &Bounds { gain: plan.coarse, hopeless });
+        }
     }
 
     /// Walks on from the best pose.
