@@ -197,7 +197,8 @@ pub unsafe extern "C" fn qdist_mesh_tracker_free(tracker: *mut qdist_mesh_tracke
 }
 
 /// A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
-/// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an error the tracker is as before.
+/// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
+/// error the tracker is as before.
 /// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_tracker_update(
