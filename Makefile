@@ -1,7 +1,7 @@
 # The C side of qdist: libraries, header, C and C++ tests, proofs about the freestanding library. Rust alone needs only cargo.
 #
 #   make lib            freestanding static library (no std)       make demo          build and run the C examples
-#   make lib-mesh       hosted static library with meshes          make demo-mesh     build and run examples/mesh_depth.c
+#   make lib-mesh       hosted static library with meshes          make demo-mesh     examples/mesh_depth.c and haptic.c
 #   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
 #   make header         src/capi/f32 and the headers of include/   make freestanding  a program without any libc
 #   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
@@ -72,6 +72,9 @@ demo-mesh: lib-mesh
 	@echo "building and running examples/mesh_depth.c"
 	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/mesh_depth.c $(lib_mesh) $(system_libs) -o $(out)/mesh_depth
 	@$(out)/mesh_depth
+	@echo "building and running examples/haptic.c"
+	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/haptic.c $(lib_mesh) $(system_libs) -o $(out)/haptic
+	@$(out)/haptic
 
 # $(call c-tests,directory,extra flags,library,command in front)
 define c-tests

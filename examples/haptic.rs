@@ -49,7 +49,7 @@ fn tube(around: usize, across: usize, radius: f64, curve: impl Fn(f64) -> Vector
     let index = |i: usize, j: usize| ((i % around) * across + j % across) as u32;
     let quads = (0..around).flat_map(|i| (0..across).map(move |j| (i, j)));
     let split = |(i, j)| {
-        let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
+        let [a, b, c, d] = [index(i, j), index(i, j + 1), index(i + 1, j + 1), index(i + 1, j)];
         [[a, b, c], [a, c, d]]
     };
     (vertices, quads.flat_map(split).collect())
@@ -170,6 +170,11 @@ fn run(request: &Request) -> Result<(), String> {
         _ => [tool(), part()],
     };
     let (a, b) = (body(a)?, body(b)?);
+    for (name, model) in [("tool", &a), ("part", &b)] {
+        if !model.mesh().report().solid {
+            println!("the {name} is no solid: its surface only is asked, there are no lower bounds");
+        }
+    }
     println!("tool: {} triangles, part: {} triangles", a.mesh().triangles().len(), b.mesh().triangles().len());
     let metric = metric(&a, request.sigma);
     let mut times = vec![];

@@ -1,4 +1,5 @@
-/* Meshes from C: reports, mass, collision, distance, contacts, depth against closed forms, cancelling, bad arguments, and that all memory of
+/* Meshes from C: reports, mass, collision, distance, contacts, depth against closed forms, cold and from tick
+ * to tick, a metric of the caller's, cancelling, bad arguments, and that all memory of
  * the caller's allocator comes back. */
 #include "qdist_mesh.h"
 #include "test.h"
@@ -123,6 +124,7 @@ static void bad_meshes(void) {
     refused(line, 3, triangles, 1, QDIST_ERROR_MESH_COLLINEAR, 77);
     qdist_mesh_free(NULL);
     qdist_mesh_pair_free(NULL);
+    qdist_mesh_tracker_free(NULL);
     CHECK(account.blocks == 0);
 }
 
@@ -255,7 +257,9 @@ static void depths(void) {
     CHECK(qdist_mesh_pair_depth(pair, &pose, NULL, NULL) == QDIST_ERROR_NULL);
     wrong = options, wrong.struct_size = 1;
     CHECK(qdist_mesh_pair_depth(pair, &pose, &wrong, &depth) == QDIST_ERROR_STRUCT_SIZE);
-    wrong = options, wrong.metric = 2;
+    wrong = options, wrong.metric = QDIST_MESH_OWN;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &wrong, &depth) == QDIST_ERROR_NULL);
+    wrong.metric = QDIST_MESH_OWN + 1;
     CHECK(qdist_mesh_pair_depth(pair, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
     wrong = options, wrong.effort = 3;
     CHECK(qdist_mesh_pair_depth(pair, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
@@ -351,6 +355,256 @@ static void certified(void) {
     CHECK(account.blocks == 0 && account.bytes == 0);
 }
 
+/* A body as heavy as a ball, moment I / V = m in all directions: sigma = |displacement of the centre|^2 + 4 m |q|^2, q being the vector part of the
+ * rotation's quaternion. */
+struct ballast {
+    double moment;
+    unsigned calls, broken;
+};
+
+static void difference(const qdist_mesh_pose *from, const qdist_mesh_pose *to, double e[3], double *s, double q[3]) {
+    const double *a = to->rotation, *b = from->rotation;
+    int i;
+    for (i = 0; i < 3; ++i) e[i] = to->translation[i] - from->translation[i];
+    /* to * conj(from) */
+    *s = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+    q[0] = a[1] * b[0] - a[0] * b[1] - a[2] * b[3] + a[3] * b[2];
+    q[1] = a[2] * b[0] - a[0] * b[2] - a[3] * b[1] + a[1] * b[3];
+    q[2] = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1];
+}
+
+static double own_distance(void *user, const qdist_mesh_pose *from, const qdist_mesh_pose *to) {
+    struct ballast *ballast = user;
+    double e[3], s, q[3];
+    difference(from, to, e, &s, q);
+    ++ballast->calls;
+    if (ballast->broken && ballast->calls > ballast->broken) return ballast->calls % 2 ? NAN : -1;
+    return sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 4 * ballast->moment * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]));
+}
+
+static void own_model(void *user, const qdist_mesh_pose *from, const qdist_mesh_pose *to, double *gradient, double *hessian) {
+    const struct ballast *ballast = user;
+    double e[3], s, q[3];
+    int i;
+    difference(from, to, e, &s, q);
+    for (i = 0; i < 6; ++i) {
+        if (gradient[i] != 0 || hessian[7 * i] != 0) ++failed;
+        gradient[i] = i < 3 ? e[i] : 2 * ballast->moment * s * q[i - 3];
+        hessian[7 * i] = i < 3 ? 1 : ballast->moment;
+    }
+    if (ballast->broken) gradient[ballast->calls % 6] = NAN, hessian[1] = -INFINITY;
+}
+
+/* The object norm of a cube as a metric of the caller's has the object norm's depth. */
+static void own_metric(void) {
+    qdist_mesh *plain = box(0.5, 0.5, 0.5, 12), *wall = box(1, 1.5, 2, 12), *open = box(0.5, 0.5, 0.5, 11), *a = NULL, *b = NULL;
+    qdist_mesh_pair *pair = NULL, *soup = NULL;
+    /* (b^2 + c^2) / 3 */
+    struct ballast ballast = {0.5 / 3, 0, 0};
+    qdist_mesh_own_metric own = {sizeof own, QDIST_MESH_SIGMA, {0, 0, 0}, 0.5, own_distance, own_model, &ballast}, wrong;
+    qdist_mesh_options options;
+    qdist_mesh_depth depth, sigma;
+    /* An edge in a face, turned by 30 degrees about y. */
+    const qdist_mesh_pose pose = {{0.9659258262890683, 0, 0.25881904510252074, 0}, {1.5, 0.3, 0.2}};
+    uint32_t collides;
+    unsigned broken;
+    CHECK(qdist_mesh_certify(plain, &a) == QDIST_OK && qdist_mesh_certify(wall, &b) == QDIST_OK);
+    CHECK(qdist_mesh_pair_create(a, b, &pair) == QDIST_OK && qdist_mesh_pair_create(open, b, &soup) == QDIST_OK);
+    CHECK(qdist_mesh_options_default(&options) == QDIST_OK);
+    depth.struct_size = sigma.struct_size = sizeof depth;
+    options.metric = QDIST_MESH_SIGMA;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &sigma) == QDIST_OK && sigma.outcome != QDIST_MESH_SEPARATED);
+    options.metric = QDIST_MESH_OWN;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_NULL);
+    options.own = &wrong;
+    wrong = own, wrong.struct_size = 0;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_STRUCT_SIZE);
+    wrong = own, wrong.distance = NULL;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_NULL);
+    wrong = own, wrong.model = NULL;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_NULL);
+    wrong = own, wrong.centre[1] = NAN;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_NONFINITE);
+    wrong = own, wrong.radius = INFINITY;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_NONFINITE);
+    wrong = own, wrong.radius = 0;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_ARGUMENT);
+    wrong = own, wrong.at_least = 3;
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_ERROR_ARGUMENT);
+    CHECK(ballast.calls == 0);
+    options.own = &own;
+    CHECK(qdist_mesh_pair_depth(soup, &pose, &options, &depth) == QDIST_ERROR_MESH_NOT_SOLID);
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_OK && ballast.calls > 0);
+    CHECK(fabs(depth.upper - sigma.upper) < 0.01 * sigma.upper && fabs(depth.lower - sigma.lower) < 1e-9 && depth.lower > 0);
+    CHECK(own_distance(&ballast, &pose, &depth.pose) == depth.upper);
+    CHECK(qdist_mesh_pair_collides(pair, &depth.pose, &collides) == QDIST_OK && collides == 0);
+    own.at_least = QDIST_MESH_OWN;
+    CHECK(qdist_mesh_pair_depth(soup, &pose, &options, &depth) == QDIST_OK && depth.lower == 0);
+    CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_OK && depth.lower == 0);
+    /* Functions that return nonsense, at once or later: no pose of theirs is an answer. */
+    for (broken = 1; broken < 200; broken += broken) {
+        ballast.calls = 0, ballast.broken = broken;
+        CHECK(qdist_mesh_pair_depth(pair, &pose, &options, &depth) == QDIST_OK && depth.upper > 0);
+        if (depth.upper == DBL_MAX) {
+            CHECK(depth.outcome == QDIST_MESH_STUCK || depth.outcome == QDIST_MESH_INVALID);
+            CHECK(memcmp(&depth.pose, &pose, sizeof pose) == 0);
+        } else {
+            CHECK(qdist_mesh_pair_collides(pair, &depth.pose, &collides) == QDIST_OK && collides == 0);
+        }
+    }
+    qdist_mesh_free(plain), qdist_mesh_free(wall), qdist_mesh_free(open), qdist_mesh_free(a), qdist_mesh_free(b);
+    qdist_mesh_pair_free(pair), qdist_mesh_pair_free(soup);
+    CHECK(account.blocks == 0 && account.bytes == 0);
+}
+
+/* A clock that is late from the n-th look on. */
+struct clock {
+    unsigned looks, until;
+};
+
+static int32_t late(void *user) {
+    struct clock *clock = user;
+    return ++clock->looks >= clock->until;
+}
+
+static qdist_mesh_budget usual_budget(void) {
+    qdist_mesh_budget budget;
+    CHECK(qdist_mesh_budget_default(&budget) == QDIST_OK);
+    return budget;
+}
+
+/* What every tick promises of the depth x, a box that has sunk so far, and the bracket otherwise. */
+static int promises(qdist_mesh_pair *pair, const qdist_mesh_depth *depth, double x) {
+    uint32_t collides = 1;
+    if (qdist_mesh_pair_collides(pair, &depth->pose, &collides) != QDIST_OK || collides) return 0;
+    if (x < -1e-9) return depth->outcome == QDIST_MESH_SEPARATED && depth->upper == 0 && depth->lower == 0;
+    return depth->lower <= x * (1 + 1e-9) + 1e-12 && depth->upper >= x * (1 - 1e-9) - 1e-9 && depth->upper <= 1.05 * x + 2e-3;
+}
+
+/* A box that sinks into another: its depth is known. */
+static void tracker(void) {
+    qdist_mesh *plain = box(0.5, 0.5, 0.5, 12), *wall = box(2, 2, 2, 12), *open = box(0.5, 0.5, 0.5, 11), *a = NULL, *b = NULL;
+    qdist_mesh_pair *pair = NULL;
+    qdist_mesh_tracker *tracker = NULL, *soup = NULL;
+    qdist_mesh_budget budget = usual_budget(), wrong;
+    qdist_mesh_depth depth, cold;
+    qdist_mesh_pose pose = at(0.2, -0.1, 2.4), bad;
+    struct clock clock = {0, 1000000000u};
+    struct ballast ballast = {0.5 / 3, 0, 0};
+    const qdist_mesh_own_metric own = {sizeof own, QDIST_MESH_SIGMA, {0, 0, 0}, 0.5, own_distance, own_model, &ballast};
+    uint32_t taken = 7, metric;
+    long allocated = 0;
+    int tick;
+    char bytes[64];
+    CHECK(qdist_mesh_certify(plain, &a) == QDIST_OK && qdist_mesh_certify(wall, &b) == QDIST_OK);
+    CHECK(qdist_mesh_pair_create(a, b, &pair) == QDIST_OK);
+    CHECK(qdist_mesh_tracker_create(NULL, b, &tracker) == QDIST_ERROR_NULL && qdist_mesh_tracker_create(a, NULL, &tracker) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_tracker_create(a, b, NULL) == QDIST_ERROR_NULL && tracker == NULL);
+    CHECK(qdist_mesh_tracker_create(a, b, (qdist_mesh_tracker **)(void *)(bytes + 1 + ((size_t)bytes & 1))) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_mesh_tracker_create(a, b, &tracker) == QDIST_OK && qdist_mesh_tracker_create(open, b, &soup) == QDIST_OK);
+    /* Trackers keep their meshes. */
+    qdist_mesh_free(plain), qdist_mesh_free(wall), qdist_mesh_free(open), qdist_mesh_free(a), qdist_mesh_free(b);
+
+    /* What is wrong, and nothing is written. */
+    CHECK(qdist_mesh_budget_default(NULL) == QDIST_ERROR_NULL);
+    CHECK(budget.struct_size == sizeof budget && budget.max_queries == 16 && budget.probes == 1 && budget.certify == 1 && budget.late == NULL);
+    memset(&depth, 0, sizeof depth);
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, NULL, &depth) == QDIST_ERROR_STRUCT_SIZE && depth.upper == 0);
+    CHECK(qdist_mesh_tracker_merge(tracker, &depth, &taken) == QDIST_ERROR_STRUCT_SIZE);
+    depth.struct_size = cold.struct_size = sizeof depth;
+    CHECK(qdist_mesh_tracker_update(NULL, &pose, NULL, &depth) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_tracker_update(tracker, NULL, NULL, &depth) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, NULL, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_tracker_update(tracker, (qdist_mesh_pose *)(void *)(bytes + 1 + ((size_t)bytes & 1)), NULL, &depth) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, (qdist_mesh_budget *)(void *)(bytes + 1 + ((size_t)bytes & 1)), &depth) == QDIST_ERROR_ALIGNMENT);
+    bad = at(0, NAN, 0);
+    CHECK(qdist_mesh_tracker_update(tracker, &bad, NULL, &depth) == QDIST_ERROR_NONFINITE);
+    bad = pose, bad.rotation[0] = 0.9;
+    CHECK(qdist_mesh_tracker_update(tracker, &bad, NULL, &depth) == QDIST_ERROR_ROTATION);
+    wrong = budget, wrong.struct_size = 8;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_STRUCT_SIZE);
+    wrong = budget, wrong.metric = 3;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
+    wrong = budget, wrong.relative = -1;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
+    wrong = budget, wrong.relative = NAN;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_NONFINITE);
+    wrong = budget, wrong.certify = 2;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
+    wrong = budget, wrong.effort = 3;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_ARGUMENT);
+    wrong = budget, wrong.metric = QDIST_MESH_OWN;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &wrong, &depth) == QDIST_ERROR_NULL);
+    wrong = budget, wrong.metric = QDIST_MESH_SIGMA;
+    CHECK(qdist_mesh_tracker_update(soup, &pose, &wrong, &depth) == QDIST_ERROR_MESH_NOT_SOLID);
+    CHECK(depth.upper == 0 && depth.outcome == 0 && depth.collision_queries == 0);
+    CHECK(qdist_mesh_tracker_reset(NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_tracker_merge(NULL, &depth, &taken) == QDIST_ERROR_NULL && qdist_mesh_tracker_merge(tracker, NULL, &taken) == QDIST_ERROR_NULL);
+    /* The pose is all 0: no rotation. */
+    CHECK(qdist_mesh_tracker_merge(tracker, &depth, &taken) == QDIST_ERROR_ROTATION && taken == 7);
+
+    for (metric = QDIST_MESH_DISP; metric <= QDIST_MESH_OWN; ++metric) {
+        double least = 1;
+        budget.metric = metric, budget.own = &own, budget.late = late, budget.late_user = &clock;
+        clock.until = 1000000000u;
+        CHECK(qdist_mesh_tracker_reset(tracker) == QDIST_OK);
+        for (tick = 0; tick < 400; ++tick) {
+            pose.translation[2] = 2.6 - 2e-3 * (tick < 200 ? tick : 400 - tick);
+            clock.looks = 0;
+            CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK);
+            CHECK(promises(pair, &depth, 2.5 - pose.translation[2]) && clock.looks > 0);
+            CHECK(depth.collision_queries + depth.contact_queries + depth.distance_queries <= (tick ? 16u : 30u));
+            if (tick == 200) least = depth.lower;
+            if (pose.translation[2] < 2.4) CHECK(depth.lower > 0.05);
+        }
+        /* In the same place as before, nothing is allocated. */
+        CHECK(least > 0.2);
+        CHECK(depth.outcome == QDIST_MESH_SEPARATED && depth.distance_queries == 1 && fabs(depth.distance.distance - 0.098) < 1e-9);
+    }
+
+    /* Without certificates, ticks where it has been before allocate nothing. */
+    budget.certify = 0;
+    for (tick = 0; tick < 400; ++tick) {
+        pose.translation[2] = 2.6 - 2e-3 * (tick < 200 ? tick : 400 - tick);
+        if (tick == 201) allocated = account.total;
+        CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && promises(pair, &depth, 2.5 - pose.translation[2]));
+    }
+    CHECK(account.total == allocated);
+
+    /* Late from the n-th look on, which is also how to cancel; without queries; and no lower bounds. */
+    pose = at(0.2, -0.1, 2.3);
+    for (tick = 0; tick < 20; ++tick) CHECK(qdist_mesh_tracker_update(tracker, &pose, NULL, &depth) == QDIST_OK);
+    budget = usual_budget(), budget.late = late, budget.late_user = &clock;
+    for (clock.until = 1; clock.until < 9; ++clock.until) {
+        clock.looks = 0, pose.translation[2] -= 1e-3;
+        CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && promises(pair, &depth, 2.5 - pose.translation[2]));
+        CHECK(clock.looks <= clock.until + 1 && depth.collision_queries + depth.contact_queries <= clock.until);
+        if (clock.until == 1) CHECK(depth.outcome == QDIST_MESH_INTERRUPTED);
+    }
+    budget = usual_budget(), budget.max_queries = 0;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && depth.collision_queries == 1);
+    CHECK(promises(pair, &depth, 2.5 - pose.translation[2]));
+    CHECK(qdist_mesh_tracker_reset(tracker) == QDIST_OK);
+    budget.certify = 0;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && depth.lower == 0);
+
+    /* A cold answer is taken over, and what is not free is not. */
+    CHECK(qdist_mesh_tracker_reset(tracker) == QDIST_OK && qdist_mesh_pair_depth(pair, &pose, NULL, &cold) == QDIST_OK);
+    CHECK(qdist_mesh_tracker_merge(tracker, &cold, &taken) == QDIST_OK && taken == 1);
+    CHECK(qdist_mesh_tracker_merge(tracker, &cold, NULL) == QDIST_OK);
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && depth.upper <= cold.upper);
+    cold.pose = pose;
+    CHECK(qdist_mesh_tracker_merge(tracker, &cold, &taken) == QDIST_OK && taken == 0);
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK && depth.upper > 0.2);
+
+    /* A soup sees surfaces, and mass of the caller's makes it a body. */
+    CHECK(qdist_mesh_tracker_update(soup, &pose, NULL, &depth) == QDIST_OK && depth.lower == 0 && depth.upper < DBL_MAX);
+    qdist_mesh_pair_free(pair);
+    qdist_mesh_tracker_free(tracker);
+    qdist_mesh_tracker_free(soup);
+    CHECK(account.blocks == 0 && account.bytes == 0);
+}
+
 static void names(void) {
     qdist_mesh_outcome outcome;
     qdist_status status;
@@ -369,6 +623,8 @@ int main(void) {
     proximity();
     depths();
     certified();
+    own_metric();
+    tracker();
     names();
     CHECK(account.total > 0 && account.blocks == 0 && account.bytes == 0 && account.misfits == 0);
     return finish("mesh");

@@ -17,6 +17,17 @@ int main() {
     depth.struct_size = sizeof depth;
     CHECK(qdist_mesh_pair_depth(pair, &pose, nullptr, &depth) == QDIST_OK);
     CHECK(depth.lower <= depth.upper && 0 < depth.upper && depth.upper <= 0.11);
+    // Tick by tick, with a clock that is a lambda.
+    qdist_mesh_tracker *tracker = nullptr;
+    qdist_mesh_budget budget;
+    int looks = 0;
+    CHECK(qdist_mesh_tracker_create(body, body, &tracker) == QDIST_OK);
+    CHECK(qdist_mesh_budget_default(&budget) == QDIST_OK);
+    budget.late = [](void *user) -> int32_t { return ++*static_cast<int *>(user) > 100; };
+    budget.late_user = &looks;
+    CHECK(qdist_mesh_tracker_update(tracker, &pose, &budget, &depth) == QDIST_OK);
+    CHECK(depth.lower <= depth.upper && depth.upper <= 0.2 && 0 < looks && looks <= 100);
+    qdist_mesh_tracker_free(tracker);
     qdist_mesh_pair_free(pair);
     qdist_mesh_free(body);
     return finish("mesh_cpp");

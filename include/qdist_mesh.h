@@ -19,14 +19,14 @@
  *
  * Library     These functions are in the hosted library (`make lib-mesh`), with all of qdist.h; link it with the system's threads and mathematics
  *             (-lpthread -ldl -lm). The freestanding library does not contain them. Everything is in double.
- * Ownership   Arrays and structs are yours, and read or written during a call only. Meshes and pairs are the library's: what a create function
- *             returned goes to the free function of its type, once. A pair keeps what it needs of its meshes.
- * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs; collision and distance queries allocate only when the memory
- *             of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
- * Threads     A mesh never changes and may be used by any number of threads. A pair serves one call at a time, from any thread.
- * Callbacks   must not unwind, longjmp, or use the pair that is calling them.
+ * Ownership   Arrays and structs are yours, and read or written during a call only. Meshes, pairs and trackers are the library's: what a create
+ *             function returned goes to the free function of its type, once. Pairs and trackers keep what they need of their meshes.
+ * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs, and a tracker for its certificates; collision and distance
+ *             queries allocate only when the memory of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
+ * Threads     A mesh never changes and may be used by any number of threads. A pair or tracker serves one call at a time, from any thread.
+ * Callbacks   must not unwind, longjmp, or use the pair or tracker that is calling them.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
- *             QDIST_ERROR_INTERNAL; the pair is as new then. (Built with panic = "abort" it would abort the process.)
+ *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with
  *             the unit.
  * Frames      Right-handed. A moves and B rests; a pose takes points of A's frame to B's, x_B = R x_A + t, and all results are in the frame of B. */
@@ -243,6 +243,57 @@ qdist_status qdist_mesh_pair_contacts(qdist_mesh_pair *pair,
                                       uint32_t capacity,
                                       uint32_t *count);
 
+/* =========================================================== METRICS ===========================================================
+ *
+ * How far is one pose of A from another? A length, in each case, that depends on A's motion only. */
+
+// Which metric?
+typedef uint32_t qdist_mesh_metric;
+
+// The distance between two poses, a length: 0 between equal poses, and proportional to A's scale. A pose for which it is negative or not finite is
+// never an answer.
+typedef double (*qdist_mesh_own_distance)(void *user, const qdist_mesh_pose *from, const qdist_mesh_pose *to);
+
+// The square of the distance from `from` when A at `to` makes a small motion m:
+//
+//   distance(from, to)^2 + 2 gradient.m + m^T hessian m
+//
+// with m = (v, w): the centre moves by v, and A turns about it by the rotation vector w, both in the axes of B. Write the gradient, exact, and the
+// Hessian, positive semidefinite, row-major; it may be rough, since every step is measured by `distance`. Both are 0 before the call.
+typedef void (*qdist_mesh_own_model)(void *user,
+                                     const qdist_mesh_pose *from,
+                                     const qdist_mesh_pose *to,
+                                     double *gradient,
+                                     double *hessian);
+
+// A metric of yours. The bracket is true whatever the functions return, as far as `distance` does not change: with a poor model the
+// answer is poor. They are called hundreds of times in a query, and must not unwind, longjmp, or use the pair or tracker that is calling them.
+typedef struct {
+    // sizeof(qdist_mesh_own_metric).
+    uint32_t struct_size;
+    // What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
+    // for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.
+    qdist_mesh_metric at_least;
+    // What rotations are about, in A's frame; coordinates of at most 1e60.
+    double centre[3];
+    // What makes an angle a length, e.g. A's radius of gyration; above 0.
+    double radius;
+    qdist_mesh_own_distance distance;
+    qdist_mesh_own_model model;
+    // For both.
+    void *user;
+} qdist_mesh_own_metric;
+
+// The farthest that any point of A moves (DISP).
+#define QDIST_MESH_DISP 0
+
+// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
+// the options. With A's own mass never more than QDIST_MESH_DISP.
+#define QDIST_MESH_SIGMA 1
+
+// One of yours: `own` of the options.
+#define QDIST_MESH_OWN 2
+
 /* ============================================================ DEPTH ============================================================
  *
  * How little must A move, rotations included, to be free of B? Local minima abound and no practical method finds the least of them with
@@ -251,9 +302,6 @@ qdist_status qdist_mesh_pair_contacts(qdist_mesh_pair *pair,
 
 // How did a query end? Whatever it says, the bracket holds.
 typedef int32_t qdist_mesh_outcome;
-
-// How far is one pose of A from another? A length, in each case, that depends on A's motion only.
-typedef uint32_t qdist_mesh_metric;
 
 // How much is done for a depth?
 typedef uint32_t qdist_mesh_effort;
@@ -281,7 +329,7 @@ typedef int32_t (*qdist_mesh_watch)(void *user, const qdist_mesh_progress *progr
 typedef struct {
     // sizeof(qdist_mesh_options).
     uint32_t struct_size;
-    // QDIST_MESH_DISP (default) or QDIST_MESH_SIGMA.
+    // QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
     qdist_mesh_metric metric;
     // QDIST_MESH_FAST, QDIST_MESH_DEFAULT (default) or QDIST_MESH_HEAVY.
     qdist_mesh_effort effort;
@@ -299,6 +347,8 @@ typedef struct {
     // QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
     // then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
     const qdist_mesh_mass *mass;
+    // QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    const qdist_mesh_own_metric *own;
     // NULL (default): nothing is called.
     qdist_mesh_watch watch;
     // For `watch`.
@@ -331,13 +381,6 @@ typedef struct {
     uint64_t distance_queries;
 } qdist_mesh_depth;
 
-// The farthest that any point of A moves (DISP).
-#define QDIST_MESH_DISP 0
-
-// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
-// the options. With A's own mass never more than QDIST_MESH_DISP.
-#define QDIST_MESH_SIGMA 1
-
 // A few seeds: an upper bound at once.
 #define QDIST_MESH_FAST 0
 
@@ -365,7 +408,7 @@ typedef struct {
 // No free pose was found: `upper` is DBL_MAX, and `pose` is the query's.
 #define QDIST_MESH_STUCK 5
 
-// Sizes so extreme that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
+// Sizes so extreme, or a metric of yours such, that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
 #define QDIST_MESH_INVALID 6
 
 // The name of an outcome, e.g. "separated". A static string, never NULL.
@@ -376,11 +419,96 @@ qdist_status qdist_mesh_options_default(qdist_mesh_options *options);
 
 // The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
 //
-// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID. B may be a polygon soup.
+// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
+// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
 qdist_status qdist_mesh_pair_depth(qdist_mesh_pair *pair,
                                    const qdist_mesh_pose *pose,
                                    const qdist_mesh_options *options,
                                    qdist_mesh_depth *depth);
+
+/* =========================================================== TRACKER ===========================================================
+ *
+ * The depth of a body that moves a little from tick to tick, in a loop of 1 kHz: free poses are remembered, and a tick makes the best of
+ * them better, within a budget. It never waits, and knows no clock but yours: `late` of the budget is asked before every query, and no query
+ * begins once it says so. What has begun is finished: some microseconds, at most a certificate (0.1 to 1 ms).
+ *
+ *   qdist_mesh_tracker_create(tool, part, &tracker);
+ *   qdist_mesh_budget_default(&budget);
+ *   budget.late = my_clock_says_late, budget.late_user = &my_clock;
+ *   depth.struct_size = sizeof depth;
+ *   for (;;) {
+ *       if (... another thread's qdist_mesh_pair_depth has a new answer ...) qdist_mesh_tracker_merge(tracker, &answer, NULL);
+ *       qdist_mesh_tracker_update(tracker, &pose, &budget, &depth);
+ *       ... a spring from `pose` to `depth.pose` ...
+ *   }
+ *
+ * It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
+ * qdist_mesh_pair_contacts of another pair of the same meshes. */
+
+// A tracker: opaque.
+typedef struct qdist_mesh_tracker qdist_mesh_tracker;
+
+// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
+// cancel, at a flag that another thread sets (atomically).
+//
+// user: late_user of the budget.
+typedef int32_t (*qdist_mesh_late)(void *user);
+
+// What a tick may cost, and by which metric it measures. Begin with qdist_mesh_budget_default.
+typedef struct {
+    // sizeof(qdist_mesh_budget).
+    uint32_t struct_size;
+    // QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
+    qdist_mesh_metric metric;
+    // Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, in the first tick and after
+    // a jump, up to 14 more.
+    uint64_t max_queries;
+    // The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
+    double relative;
+    // Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 1.
+    uint32_t probes;
+    // 1 (default): lower bounds are renewed when a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
+    uint32_t certify;
+    // With how much effort; default QDIST_MESH_FAST.
+    qdist_mesh_effort effort;
+    // QDIST_MESH_SIGMA: as `mass` of qdist_mesh_options. NULL (default): A's own.
+    const qdist_mesh_mass *mass;
+    // QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    const qdist_mesh_own_metric *own;
+    // NULL (default): there is no clock.
+    qdist_mesh_late late;
+    // For `late`.
+    void *late_user;
+} qdist_mesh_budget;
+
+// Writes the defaults, struct_size included.
+qdist_status qdist_mesh_budget_default(qdist_mesh_budget *budget);
+
+// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
+qdist_status qdist_mesh_tracker_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_tracker **tracker);
+
+// Frees a tracker; NULL is nothing.
+void qdist_mesh_tracker_free(qdist_mesh_tracker *tracker);
+
+// A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
+// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
+// error the tracker is as before.
+// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+qdist_status qdist_mesh_tracker_update(qdist_mesh_tracker *tracker,
+                                       const qdist_mesh_pose *pose,
+                                       const qdist_mesh_budget *budget,
+                                       qdist_mesh_depth *depth);
+
+// Takes over the pose of an answer from elsewhere, whatever pose it was the answer for: qdist_mesh_pair_depth of another thread, say. Only
+// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
+//
+// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+qdist_status qdist_mesh_tracker_merge(qdist_mesh_tracker *tracker,
+                                      const qdist_mesh_depth *answer,
+                                      uint32_t *taken);
+
+// Forgets everything: the next tick is the first.
+qdist_status qdist_mesh_tracker_reset(qdist_mesh_tracker *tracker);
 
 #ifdef __cplusplus
 }

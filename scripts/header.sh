@@ -41,7 +41,7 @@ header() {
 header src/capi/prelude.h "status version symmetry" "solver sets shapes points combine gauges query span warm" |
     cat -s >"$out"
 header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
-header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/depth" "" | cat -s >"$out.mesh"
+header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"
 
 # $1: what was written, $2: the header.
 install() {

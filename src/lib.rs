@@ -37,7 +37,8 @@
 //!
 //! In six dimensions a polytope outgrows any memory. Then the same expansion goes over all directions cone by cone (`plan::conewise`), in the same
 //! memory, whatever its size. A polytopal Q needs neither: one ray per vertex is a convex problem (`plan::rays`). From tick to tick of a
-//! control loop the bracket moves along with the set ([`tracker`]).
+//! control loop the bracket moves along with the set ([`tracker`]). Meshes, which are not convex, have a search of their own, and a tracker of
+//! their own (`mesh::depth`).
 //!
 //! Three things keep it exact and fast:
 //!

@@ -6,6 +6,7 @@ use crate::peers::Compared;
 use crate::report::{excess, milliseconds};
 use crate::scenes::Scenes;
 use crate::table::quantile;
+use crate::warm::{LATE, TICK, Warm, Way};
 
 /// What was asked, what was found, the bar, and whether it is met (`None`: not measured).
 struct Bar {
@@ -74,18 +75,41 @@ fn order(cold: &[&Cold]) -> Bar {
     share("sqrt(sigma) <= DISP <= translation", cold.iter().copied(), 1.0, holds)
 }
 
-/// The tracker's p99 and how it follows cold queries.
-fn warm() -> Bar {
-    Bar {
-        what: "warm, all pairs, both metrics, p99".into(),
-        found: "not measured".into(),
-        bar: "<= 1 ms".into(),
-        met: None,
-    }
+/// The tracker's time with the haptic example's clock, beside the time without, and its upper bound beside cold ones, 90 % of them and
+/// with a background too.
+fn tracked(warm: &[Warm]) -> Vec<Bar> {
+    let bar = |with: &Warm| {
+        let ms = |list: &[f64], share: f64| quantile(list, share) / 1e6;
+        let other = |way: Way| warm.iter().find(|w| w.way == way && w.group == with.group && w.kind == with.kind);
+        let free = other(Way::Queries).map_or(f64::NAN, |w| ms(&w.times, 0.99));
+        let helped = other(Way::Background).map_or(f64::NAN, |w| quantile(&w.ratios, 0.9));
+        let [ratio, far] = [0.5, 0.9].map(|share| quantile(&with.ratios, share));
+        let awake = if with.awake.is_empty() { f64::NAN } else { ms(&with.awake, 0.99) };
+        let [middle, high, most] = [0.5, 0.99, 1.0].map(|share| ms(&with.times, share));
+        let found = format!(
+            "{middle:.3}, {high:.3} (awake {awake:.3}, no clock {free:.3}), {most:.1} ms; over cold {ratio:.3}, p90 {far:.2} (helped {helped:.2})"
+        );
+        Bar {
+            what: format!("warm {}, {}, late at {} us: p50, p99, max", with.kind.name(), with.group, LATE.as_micros()),
+            found,
+            bar: "p99 <= 1 ms, over cold <= 1.05".into(),
+            met: (!with.ratios.is_empty()).then_some(1e6 * high <= TICK && ratio <= 1.05),
+        }
+    };
+    let mut bars: Vec<_> = warm.iter().filter(|w| w.way == Way::Clock).map(bar).collect();
+    let count = |of: fn(&Warm) -> usize| warm.iter().map(of).sum::<usize>();
+    let (all, wrong) = (count(|w| w.ratios.len()), count(|w| w.wrong));
+    bars.push(Bar {
+        what: "warm brackets agree with cold ones, poses free".into(),
+        found: format!("{}/{all}", all - wrong),
+        bar: "all".into(),
+        met: (all > 0).then_some(wrong == 0),
+    });
+    bars
 }
 
 /// One line a bar. `compared` is `None` without FCL.
-pub fn summary(scenes: &Scenes, cold: &[Cold], compared: Option<&[Compared]>) -> String {
+pub fn summary(scenes: &Scenes, cold: &[Cold], warm: &[Warm], compared: Option<&[Compared]>) -> String {
     let normal: Vec<&Cold> = cold.iter().filter(|c| c.variant == DEFAULT).collect();
     let of = |kind: Kind| normal.iter().copied().filter(move |c| c.row.kind == kind);
     let near = |most: f64| move |c: &Cold| excess(c).is_some_and(|e| e <= most);
@@ -109,7 +133,7 @@ pub fn summary(scenes: &Scenes, cold: &[Cold], compared: Option<&[Compared]>) ->
             bars.extend(scenes.benchmarks.iter().zip(limits).map(|(group, most)| median(&normal, group, kind, most)));
         }
     }
-    bars.push(warm());
+    bars.extend(tracked(warm));
     match compared {
         Some(compared) => {
             let groups = scenes.benchmarks.as_slice();
@@ -132,7 +156,7 @@ pub fn summary(scenes: &Scenes, cold: &[Cold], compared: Option<&[Compared]>) ->
         Some(false) => "MISSED",
         None => "-",
     };
-    bars.iter().map(|b| format!("{:48} {:90} {:10} {}\n", b.what, b.found, b.bar, verdict(b))).collect()
+    bars.iter().map(|b| format!("{:48} {:96} {:30} {}\n", b.what, b.found, b.bar, verdict(b))).collect()
 }
 
 /// FCL and ours say the same: the answers' poses are free, and distances are equal to 1e-6 of themselves or to rounding.

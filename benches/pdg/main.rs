@@ -6,8 +6,8 @@
 //! ```
 //!
 //! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's variants:
-//! unions of constraints, sampling, and the K nearest contact samples as seeds. The solid test and the distance against FCL's on the same poses. Writes
-//! `pdg.csv`, `proximity.csv` and a picture of error against time per metric.
+//! unions of constraints, sampling, and the K nearest contact samples as seeds. The tracker along paths; the solid test and the distance against
+//! FCL's on the same poses. Writes `pdg.csv`, `warm.csv`, `proximity.csv` and a picture of error against time per metric.
 
 // Modules of tests and of the program are used in part, and their own tests run elsewhere.
 #[allow(dead_code, unused_imports)]
@@ -37,6 +37,7 @@ mod seeds;
 #[allow(dead_code, unused_imports)]
 #[path = "../../examples/pdg/table.rs"]
 mod table;
+mod warm;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -66,13 +67,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cold = measure::cold(&scenes, repetitions, Duration::from_millis(enough));
     std::fs::write(folder.join("pdg.csv"), report::csv(&cold))?;
     plot::all(&cold, &scenes.benchmarks, &folder)?;
+    let warm = warm::all(&scenes, if quick { 800 } else { 8000 });
+    std::fs::write(folder.join("warm.csv"), warm::csv(&warm))?;
     let compare = |program: &Path| peers::compare(&scenes, &cold, program, &folder, rounds);
     let compared = fcl.as_deref().map(compare).transpose()?;
     if let Some(compared) = &compared {
         std::fs::write(folder.join("proximity.csv"), report::proximity_csv(compared))?;
     }
     println!("\nError against time\n{}", report::curve(&cold));
-    println!("Bars, default effort\n{}", bars::summary(&scenes, &cold, compared.as_deref()));
+    println!("Bars, default effort\n{}", bars::summary(&scenes, &cold, &warm, compared.as_deref()));
     match report::beaten(&cold) {
         better if better.is_empty() => {}
         better => println!("better than the best known: {better}"),

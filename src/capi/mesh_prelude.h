@@ -19,14 +19,14 @@
  *
  * Library     These functions are in the hosted library (`make lib-mesh`), with all of qdist.h; link it with the system's threads and mathematics
  *             (-lpthread -ldl -lm). The freestanding library does not contain them. Everything is in double.
- * Ownership   Arrays and structs are yours, and read or written during a call only. Meshes and pairs are the library's: what a create function
- *             returned goes to the free function of its type, once. A pair keeps what it needs of its meshes.
- * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs; collision and distance queries allocate only when the memory
- *             of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
- * Threads     A mesh never changes and may be used by any number of threads. A pair serves one call at a time, from any thread.
- * Callbacks   must not unwind, longjmp, or use the pair that is calling them.
+ * Ownership   Arrays and structs are yours, and read or written during a call only. Meshes, pairs and trackers are the library's: what a create
+ *             function returned goes to the free function of its type, once. Pairs and trackers keep what they need of their meshes.
+ * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs, and a tracker for its certificates; collision and distance
+ *             queries allocate only when the memory of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
+ * Threads     A mesh never changes and may be used by any number of threads. A pair or tracker serves one call at a time, from any thread.
+ * Callbacks   must not unwind, longjmp, or use the pair or tracker that is calling them.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
- *             QDIST_ERROR_INTERNAL; the pair is as new then. (Built with panic = "abort" it would abort the process.)
+ *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with
  *             the unit.
  * Frames      Right-handed. A moves and B rests; a pose takes points of A's frame to B's, x_B = R x_A + t, and all results are in the frame of B. */

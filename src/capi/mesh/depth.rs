@@ -5,28 +5,15 @@
 //! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
 use super::super::generic::{aligned, array, finite, known_size, shared};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_NONFINITE, qdist_status, status,
-};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
 use super::guard::guard;
+use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
 use super::model::qdist_mesh_mass;
 use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
-use crate::mesh::mass::MassProperties;
-use crate::mesh::metric::{BodyFrame, Metric, Sigma};
-use crate::mesh::optimize::Quadratic;
-use crate::mesh::{DepthOptions, Effort, MeshDepth, Model, Outcome, Progress};
+use crate::mesh::{DepthOptions, Effort, MeshDepth, Outcome, Progress};
 use core::ffi::{c_char, c_void};
 use core::ptr::{null, null_mut};
-use nalgebra::{Isometry3, Matrix3, Point3};
-
-/// How far is one pose of A from another? A length, in each case, that depends on A's motion only.
-pub type qdist_mesh_metric = u32;
-
-/// The farthest that any point of A moves (DISP).
-pub const QDIST_MESH_DISP: qdist_mesh_metric = 0;
-/// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
-/// the options. With A's own mass never more than QDIST_MESH_DISP.
-pub const QDIST_MESH_SIGMA: qdist_mesh_metric = 1;
+use nalgebra::Isometry3;
 
 /// How much is done for a depth?
 pub type qdist_mesh_effort = u32;
@@ -53,7 +40,7 @@ pub const QDIST_MESH_INTERRUPTED: qdist_mesh_outcome = 3;
 pub const QDIST_MESH_BUDGET: qdist_mesh_outcome = 4;
 /// No free pose was found: `upper` is DBL_MAX, and `pose` is the query's.
 pub const QDIST_MESH_STUCK: qdist_mesh_outcome = 5;
-/// Sizes so extreme that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
+/// Sizes so extreme, or a metric of yours such, that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
 pub const QDIST_MESH_INVALID: qdist_mesh_outcome = 6;
 
 /// The name of an outcome, e.g. "separated". A static string, never NULL.
@@ -70,6 +57,15 @@ pub extern "C" fn qdist_mesh_outcome_string(outcome: qdist_mesh_outcome) -> *con
         _ => c"unknown outcome",
     }
     .as_ptr()
+}
+
+pub(super) fn effort(effort: qdist_mesh_effort) -> Check<Effort> {
+    match effort {
+        QDIST_MESH_FAST => Ok(Effort::Fast),
+        QDIST_MESH_DEFAULT => Ok(Effort::Default),
+        QDIST_MESH_HEAVY => Ok(Effort::Heavy),
+        _ => Err(QDIST_ERROR_ARGUMENT),
+    }
 }
 
 fn outcome(outcome: Outcome) -> qdist_mesh_outcome {
@@ -112,7 +108,7 @@ pub type qdist_mesh_watch =
 pub struct qdist_mesh_options {
     /// sizeof(qdist_mesh_options).
     pub struct_size: u32,
-    /// QDIST_MESH_DISP (default) or QDIST_MESH_SIGMA.
+    /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
     pub metric: qdist_mesh_metric,
     /// QDIST_MESH_FAST, QDIST_MESH_DEFAULT (default) or QDIST_MESH_HEAVY.
     pub effort: qdist_mesh_effort,
@@ -130,6 +126,8 @@ pub struct qdist_mesh_options {
     /// QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
     /// then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
     pub mass: *const qdist_mesh_mass,
+    /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    pub own: *const qdist_mesh_own_metric,
     /// NULL (default): nothing is called.
     pub watch: qdist_mesh_watch,
     /// For `watch`.
@@ -165,7 +163,7 @@ pub struct qdist_mesh_depth {
 }
 
 impl qdist_mesh_depth {
-    fn new(found: &MeshDepth) -> Self {
+    pub(super) fn new(found: &MeshDepth) -> Self {
         const NOWHERE: qdist_mesh_distance = qdist_mesh_distance {
             distance: 0.0,
             on_a: [0.0; 3],
@@ -207,6 +205,7 @@ pub unsafe extern "C" fn qdist_mesh_options_default(options: *mut qdist_mesh_opt
             relative: usual.relative,
             poses: null(),
             mass: null(),
+            own: null(),
             watch: None,
             watch_user: null_mut(),
         };
@@ -219,7 +218,8 @@ pub unsafe extern "C" fn qdist_mesh_options_default(options: *mut qdist_mesh_opt
 
 /// The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
 ///
-/// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID. B may be a polygon soup.
+/// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
+/// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_pair_depth(
     pair: *mut qdist_mesh_pair,
@@ -235,7 +235,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_depth(
             (exclusive(pair)?, shared(pose)?.checked()?, Query::new(options)?)
         };
         let model = pair.a.clone();
-        let metric = query.metric(&model)?;
+        let metric = query.metric.of(&model)?;
         let found = pair.ask(|solver| {
             let mut watch = |progress: &Progress| query.goes_on(progress);
             let watch = query.watch.is_some().then_some(&mut watch as &mut dyn FnMut(&Progress) -> bool);
@@ -248,10 +248,8 @@ pub unsafe extern "C" fn qdist_mesh_pair_depth(
 }
 
 /// The caller's options, checked.
-pub(super) struct Query {
-    metric: qdist_mesh_metric,
-    /// The caller's own mass, with QDIST_MESH_SIGMA.
-    mass: Option<Weighted>,
+struct Query {
+    metric: Chosen,
     effort: Effort,
     seed: u64,
     max_queries: u64,
@@ -264,12 +262,11 @@ pub(super) struct Query {
 impl Query {
     /// # Safety
     /// If not NULL and aligned, `options` and what it points to are valid for the life of the value.
-    pub(super) unsafe fn new(options: *const qdist_mesh_options) -> Check<Query> {
+    unsafe fn new(options: *const qdist_mesh_options) -> Check<Query> {
         if options.is_null() {
             let usual = DepthOptions::default();
             return Ok(Query {
-                metric: QDIST_MESH_DISP,
-                mass: None,
+                metric: Chosen::Disp,
                 effort: usual.effort,
                 seed: usual.seed,
                 max_queries: usual.max_queries,
@@ -285,21 +282,13 @@ impl Query {
             known_size((&raw const (*options).struct_size).read(), size_of::<qdist_mesh_options>())?;
             shared(options)?
         };
-        let effort = match options.effort {
-            QDIST_MESH_FAST => Effort::Fast,
-            QDIST_MESH_DEFAULT => Effort::Default,
-            QDIST_MESH_HEAVY => Effort::Heavy,
-            _ => return Err(QDIST_ERROR_ARGUMENT),
-        };
+        let effort = effort(options.effort)?;
         finite(&[options.relative])?;
-        if options.relative < 0.0 || options.metric > QDIST_MESH_SIGMA {
+        if options.relative < 0.0 {
             return Err(QDIST_ERROR_ARGUMENT);
         }
-        let mass = match options.metric == QDIST_MESH_SIGMA && !options.mass.is_null() {
-            // SAFETY: the caller's promise.
-            true => Some(Weighted::new(unsafe { shared(options.mass) }?)?),
-            false => None,
-        };
+        // SAFETY: the caller's promise.
+        let metric = unsafe { Chosen::new(options.metric, options.mass, options.own) }?;
         let poses = match options.pose_count {
             0 => Vec::new(),
             count => {
@@ -309,8 +298,7 @@ impl Query {
             }
         };
         Ok(Query {
-            metric: options.metric,
-            mass,
+            metric,
             effort,
             seed: options.seed,
             max_queries: options.max_queries,
@@ -321,15 +309,7 @@ impl Query {
         })
     }
 
-    pub(super) fn metric<'q>(&'q self, a: &'q Model) -> Check<&'q dyn Metric> {
-        match (self.metric, &self.mass) {
-            (QDIST_MESH_SIGMA, Some(weighted)) => Ok(weighted),
-            (QDIST_MESH_SIGMA, None) => a.sigma().map(|sigma| sigma as _).ok_or(QDIST_ERROR_MESH_NOT_SOLID),
-            _ => Ok(a.disp()),
-        }
-    }
-
-    pub(super) fn options(&self) -> DepthOptions<'_> {
+    fn options(&self) -> DepthOptions<'_> {
         DepthOptions {
             effort: self.effort,
             seed: self.seed,
@@ -351,49 +331,5 @@ impl Query {
         };
         // SAFETY: the promise of `new`.
         self.watch.is_none_or(|watch| unsafe { watch(self.user, &told) } == 0)
-    }
-}
-
-/// The root mean square over a mass of the caller's. What is proved of A's own is not of this one, so it is a metric of its own, without a
-/// lower bound.
-struct Weighted(Sigma);
-
-impl Weighted {
-    /// Wants a positive volume, and an inertia tensor as a body can have it.
-    fn new(mass: &qdist_mesh_mass) -> Check<Self> {
-        finite(&mass.centre)?;
-        finite(&mass.inertia)?;
-        finite(&[mass.volume])?;
-        if mass.centre.iter().any(|x| x.abs() > crate::mesh::MAX_COORDINATE) {
-            return Err(QDIST_ERROR_NONFINITE);
-        }
-        let inertia = Matrix3::from_row_slice(&mass.inertia);
-        let size = inertia.amax();
-        if !(mass.volume > 0.0 && (size / mass.volume).is_normal()) {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        // Mass has no negative second moments, trace / 2 - I, and here it does not lie on a line.
-        let scaled = inertia / size;
-        let principal = scaled.symmetric_eigenvalues();
-        let is_body = principal.min() > 1e-9 && 2.0 * principal.max() <= principal.sum() + 1e-9;
-        if (scaled - scaled.transpose()).amax() > 1e-9 || !is_body {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let centre = Point3::from(mass.centre);
-        Ok(Weighted(Sigma::new(&MassProperties { volume: mass.volume, centre, inertia })))
-    }
-}
-
-impl Metric for Weighted {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        self.0.distance(from, to)
-    }
-
-    fn frame(&self) -> &BodyFrame {
-        self.0.frame()
-    }
-
-    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
-        self.0.model(from, at)
     }
 }

@@ -2,15 +2,19 @@
 //!
 //! * [`model`]: meshes from arrays, what is wrong with them, and their mass.
 //! * [`pair`]: two of them: collision, distance, contacts.
+//! * [`metric`]: how far one pose is from another; a metric of the caller's.
 //! * [`depth`]: generalized penetration depth.
+//! * [`tracker`]: the same in a control loop, tick by tick.
 //! * `allocator` (feature `c-allocator`): where the C library's memory comes from.
 //!
-//! Handles are boxes. A pair shares its meshes by reference counting, so that they may be freed in any order. Every call runs in
+//! Handles are boxes. Pairs and trackers share their meshes by reference counting, so that they may be freed in any order. Every call runs in
 //! [`guard`]: a panic, which would be a defect, becomes a status.
 
 #[cfg(feature = "c-allocator")]
 pub mod allocator;
 pub mod depth;
 mod guard;
+pub mod metric;
 pub mod model;
 pub mod pair;
+pub mod tracker;
