@@ -183,6 +183,25 @@ fn force_closure_at_its_limits() {
     }
 }
 
+/// Little spin friction is closure, in `f32` down to 1e-4 of the largest wrench.
+#[test]
+fn little_spin_friction_closes_in_single_precision() {
+    let cube = |m: usize, mus: f32| -> Vec<Contact<f32>> {
+        let tip = |i: usize| {
+            let x = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let soft = Friction::Soft { mu: 0.5, mus };
+            Contact::new(Vector::from([x, 0.0, 0.0]), Vector::from([-x, 0.0, 0.0]), soft).unwrap()
+        };
+        (0..m).map(tip).collect()
+    };
+    for norm in [Norm::L1, Norm::LInf] {
+        for m in [2, 6, 12] {
+            assert!(closure(&cube(m, 2e-4), norm).is_closed(), "{m} {norm:?}");
+            assert!(!closure(&cube(m, 0.0), norm).is_closed(), "{m} {norm:?}");
+        }
+    }
+}
+
 #[test]
 fn recorded_grasps_are_closed_or_not_as_their_references_say() {
     let Some(grasps) = recorded("recorded_grasps_are_closed_or_not_as_their_references_say") else { return };

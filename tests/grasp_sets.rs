@@ -108,6 +108,22 @@ fn sets_keep_their_promise() {
     assert!(tightest < 1.05, "{tightest}");
 }
 
+/// A fingertip whose spin friction is long, on a long arm: force closure is decided to roundoffs of the largest wrench, not to the
+/// product of both lengths.
+#[test]
+fn spin_friction_on_a_long_arm_costs_no_precision() {
+    let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
+    let touch = |x: f64| {
+        let soft = Friction::Soft { mu: 0.5, mus: 1e5 };
+        Contact::new(Vector::from([x, 0.0, 0.0]), Vector::from([-x.signum(), 0.0, 0.0]), soft).unwrap()
+    };
+    let primitives = primitives(&[touch(-1e5), touch(1e5)], &frame);
+    for norm in [Norm::L1, Norm::LInf] {
+        let set = WrenchSet::new(&primitives, norm);
+        assert!(set.error() < 1e-13 * set.extent(), "{:e} {:e}", set.error(), set.extent());
+    }
+}
+
 #[test]
 fn primitives_are_sets_of_their_own() {
     let axis = |i: usize| Vector::from(core::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));

@@ -6,7 +6,7 @@ use common::dice::Dice;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
-use qdist::support::{BoxShape, Ellipsoid, Failure, Rigid, Support};
+use qdist::support::{BoxShape, Ellipsoid, Failure, Points, Rigid, Support};
 use qdist::{Options, Outcome, Plan, Real, Tracker, Vector};
 
 fn v<T: Real, const N: usize>(x: [f64; N]) -> Vector<T, N> {
@@ -167,6 +167,34 @@ fn flat_sets_have_a_depth_in_their_span() {
     flat::<6, 3>();
     flat::<6, 4>();
     flat::<6, 5>();
+}
+
+/// A line that ends at the origin, as the wrenches of one contact without friction do: d is 0, along the line.
+#[test]
+fn a_line_that_ends_at_the_origin() {
+    let mut dice = Dice::new(73);
+    let mut memory = Memory::new::<f64, 6>(64, 256);
+    for round in 0..60 {
+        let axis = match round % 3 {
+            0 => v([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+            _ => Vector::<f64, 6>::from(dice.direction::<6>()),
+        };
+        let far = axis * dice.decade(-3.0, 3.0);
+        let ends = [[0.0; 6], far.into()];
+        let line = Points::new(&ends).unwrap();
+        let q: Box<dyn Gauge<f64, 6>> = match round % 2 {
+            0 => Box::new(Ball::new(0.5).unwrap()),
+            _ => Box::new(BoxGauge::new(v([0.5; 6])).unwrap()),
+        };
+        let a = memory.solver::<f64, 6>().solve_in_span(&line, q.as_ref(), &brisk());
+        assert_eq!((a.outcome, a.dimension), (Outcome::Touching, 1), "{far} {:?}", Seen::from(&a));
+        assert!(a.lower <= 0.0 && 0.0 <= a.upper && a.upper - a.lower < 1e-11 * far.norm(), "{:?}", Seen::from(&a));
+        assert!((a.direction + axis).norm() < 1e-12, "{} is not against {axis}", a.direction);
+        // Beside the origin it is as far away as ever.
+        let ends = [far.into(), (far * 2.0).into()];
+        let a = memory.solver::<f64, 6>().solve_in_span(&Points::new(&ends).unwrap(), q.as_ref(), &brisk());
+        assert!(a.outcome == Outcome::Separated && a.lower < 0.0, "{:?}", Seen::from(&a));
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Grasps from JSON.
 //!
 //! The file has a list `instances` of grasps; a list of grasps or one grasp alone will do. A grasp has `contacts` and,
-//! usually, `id`, `length_unit_m` and `refs`.
+//! usually, `id`, `length_unit_m` and `refs`. Without `id`, its number in the list is its id. No two grasps have the same.
 //!
 //! * A contact has `p`, the unit normal `n` into the object, and may have tangents `o` and `t`, a name `finger`, and the four rows `J` of its
 //!   Jacobian (none: passive, a palm). `type` is `soft`, `hard` or `frictionless`; without it, `mu` and `mus` say what it is. A `mus` that is
@@ -13,6 +13,8 @@
 //!
 //! All numbers are in units in which the torque scale is 1 and moments refer to the origin. What else the file says is not read. An error names
 //! grasp, contact and field.
+
+use std::collections::HashMap;
 
 use qdist::Vector;
 use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm};
@@ -134,7 +136,15 @@ pub fn read(text: &str) -> Result<Vec<Grasp>, Trouble> {
         Value::Number(id) => id.to_string(),
         _ => i.to_string(),
     };
-    list.iter().enumerate().map(|(i, v)| grasp(name(i, v), v)).collect()
+    let mut seen = HashMap::new();
+    let unique = |(i, v)| {
+        let id = name(i, v);
+        match seen.insert(id.clone(), i) {
+            Some(first) => Err(format!("grasp {id}, id: is that of grasp number {first} and of number {i}, from 0")),
+            None => grasp(id, v),
+        }
+    };
+    list.iter().enumerate().map(unique).collect()
 }
 
 fn grasp(id: String, value: &Value) -> Result<Grasp, Trouble> {
@@ -150,9 +160,10 @@ fn grasp(id: String, value: &Value) -> Result<Grasp, Trouble> {
         hand.push(hand_contact(&field)?);
     }
     let refs = Field { value: &value["refs"], at: top.at.clone() };
-    let queries = match refs.maybe(|refs| refs.entries("ref"))? {
-        Some(list) => list.iter().map(reference).collect::<Result<_, _>>()?,
-        None => Vec::new(),
+    let queries = match refs.value {
+        Value::Null => Vec::new(),
+        Value::Array(_) => refs.entries("ref")?.iter().map(reference).collect::<Result<_, _>>()?,
+        _ => return top.get("refs").wrong("is not a list"),
     };
     let length_unit = top.get("length_unit_m").maybe(Field::number)?;
     Ok(Grasp { id, length_unit, names, hand, queries })
@@ -161,6 +172,12 @@ fn grasp(id: String, value: &Value) -> Result<Grasp, Trouble> {
 fn hand_contact(field: &Field) -> Result<HandContact<f64>, Trouble> {
     let coefficient = |key: &str| field.get(key).maybe(Field::number);
     let (mu, mus) = (coefficient("mu")?, coefficient("mus")?.unwrap_or(0.0));
+    // Also where the model, given or guessed, has no use for them.
+    for (key, x) in [("mu", mu.unwrap_or(0.0)), ("mus", mus)] {
+        if x < 0.0 {
+            return field.get(key).wrong("is negative");
+        }
+    }
     let kind = match field.get("type").maybe(|kind| kind.text())? {
         Some(kind) => kind,
         None if mus > 0.0 => "soft",
@@ -231,6 +248,10 @@ fn gauge(reference: &Field) -> Result<Q, Trouble> {
     let axes = if !s.value.is_null() {
         Some((s.entries("row")?.iter().map(Field::vector).collect::<Result<Vec<_>, _>>()?, s.at))
     } else if shape.numbers().is_some() && (count != 6 || !q.get("space").value.is_null()) {
+        if r.value.is_null() {
+            return q
+                .wrong(&format!("has {count} numbers, which is not 6, and neither R nor Q.S says along which axes"));
+        }
         let rows = r.rows()?;
         let columns = rows.first().map_or(0, Vec::len);
         if rows.len() != 6 || rows.iter().any(|row| row.len() != columns) {
@@ -267,6 +288,7 @@ mod tests {
         assert_eq!(grasp.hand[0].contact.friction(), Friction::Hard { mu: 0.5 });
         assert!(grasp.hand[0].jacobian.is_none());
         assert_eq!(read(&format!("[{BARE}, {BARE}]")).unwrap().len(), 2);
+        assert_eq!(read("[]").unwrap().len(), 0);
         assert_eq!(read(&format!(r#"{{"instances": [{BARE}]}}"#)).unwrap().len(), 1);
     }
 
@@ -288,11 +310,15 @@ mod tests {
     #[test]
     fn errors_say_where() {
         for (from, to, says) in [
+            ("0.5", "-0.5", "grasp 0, contact 0, mu: is negative"),
+            ("0.5", "-0.5, \"type\": \"frictionless\"", "grasp 0, contact 0, mu: is negative"),
+            ("0.5", "0.5, \"mus\": -0.1", "grasp 0, contact 0, mus: is negative"),
+            ("}]}", "}], \"refs\": {\"set\": \"W\"}}", "grasp 0, refs: is not a list"),
             (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp 0, contact 0, p: has not 3 numbers"),
             (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0, p, entry 1 (missing): is not a number"),
             (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp 0, contact 0, n: the normal is not a unit vector"),
             (r#""p""#, r#""q""#, "grasp 0, contact 0, p (missing): is not a list"),
-            ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0, mu, mus: a friction"),
+            ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0, mu: is negative"),
             ("0.5", "0.5, \"J\": [[1], [1], [1]]", "grasp 0, contact 0, J: has not 4 rows"),
             ("0.5", "0.5, \"J\": [[1], [1, 2], [1], [0]]", "grasp 0, contact 0, J: the Jacobian"),
             ("0.5", "0.5, \"type\": \"wet\"", "grasp 0, contact 0, type: is not soft"),
@@ -301,12 +327,15 @@ mod tests {
             (
                 "}]}",
                 "}], \"refs\": [{\"set\": \"W\", \"norm\": \"L1\", \"Q\": {\"type\": \"box\", \"half_widths\": [1]}}]}",
-                "grasp 0, ref 0, R (missing): is not a list",
+                "grasp 0, ref 0, Q: has 1 numbers, which is not 6",
             ),
         ] {
             let text = BARE.replacen(from, to, 1);
             assert!(refusal(&text).starts_with(says), "{text}: {}", refusal(&text));
         }
         assert!(refusal("{").contains("line 1"));
+        let named = BARE.replacen('{', "{\"id\": \"a\", ", 1);
+        assert!(refusal(&format!("[{named}, {BARE}, {named}]")).starts_with("grasp a, id: is that of grasp number 0"));
+        assert!(refusal(&format!("[{BARE}, {}]", named.replace("\"a\"", "0"))).starts_with("grasp 0, id:"));
     }
 }

@@ -70,8 +70,9 @@ fn turn(moment: &Vector<f64, 3>) -> String {
 pub fn wrench(w: &Vector<f64, 6>) -> String {
     let (force, moment) = (w.fixed_rows::<3>(0).into_owned(), w.fixed_rows::<3>(3).into_owned());
     let (f, m, all) = (force.norm(), moment.norm(), w.norm());
+    // Of a grasp without any wrench no direction is the weakest.
     if !(all > 0.0) {
-        return "nothing".into();
+        return "any wrench".into();
     }
     if m < SMALL * all {
         return push(&force);
@@ -146,7 +147,7 @@ mod tests {
                 [1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
                 "a push along +x together with a turn about z, counterclockwise seen from +z",
             ),
-            ([0.0; 6], "nothing"),
+            ([0.0; 6], "any wrench"),
         ] {
             assert_eq!(wrench(&Vector::from(w)), words);
         }

@@ -42,8 +42,9 @@ impl<T: Real> Closure<T> {
 impl<T: Real> Solver<'_, T, 6> {
     /// Is the origin in the interior of the wrench set `w`?
     ///
-    /// Ends at the first ball in W, or direction along which W has no extent, that is larger, or not larger, than rounding: some 300
-    /// roundoffs of W's size, or what [`Support::error`] says, if that is more. Of `options`, `max_iterations` and `guess` count.
+    /// Ends at the first ball in W, or direction along which W has no extent, that is larger, or not larger, than rounding: 64 roundoffs
+    /// of W's size and four times what [`Support::error`] says; four times as much where arithmetic has no ball above that. Of `options`,
+    /// `max_iterations` and `guess` count.
     ///
     /// Cost: that of the start and a few points; some 10 to 100 support calls, tens of microseconds on a desktop machine.
     ///
@@ -80,9 +81,14 @@ impl<T: Real> Solver<'_, T, 6> {
         options: &Options<T, 6>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Closure<T> {
-        let rounding = T::count(16) * w.error() + T::count(256) * T::ROUNDOFF * w.extent();
-        let options = Options { threshold: Some(rounding.at_least(T::TINY)), ..*options };
-        let answer = self.solve_until(w, &Ball::unit(), &options, interrupt);
+        let rounding = (T::count(4) * w.error() + T::count(64) * T::ROUNDOFF * w.extent()).at_least(T::TINY);
+        let mut ask = |threshold: T| {
+            self.solve_until(w, &Ball::unit(), &Options { threshold: Some(threshold), ..*options }, interrupt)
+        };
+        let mut answer = ask(rounding);
+        if answer.outcome == Outcome::Precision && !(answer.lower > T::zero()) {
+            answer = ask(T::count(4) * rounding);
+        }
         let direction = answer.direction;
         match answer.outcome {
             Outcome::SupportFailed => Closure::Undecided { direction },

@@ -79,7 +79,15 @@ impl<T: Real> Primitive<T> {
     ) -> Result<Self, ContactError> {
         let (map, cap) = (frame.contact_map(contact), contact.force_cap());
         let image = Self::new(map * center * cap, map * disc * cap)?;
-        let rounding = T::count(16) * T::ROUNDOFF * frobenius(&map) * cap * (norm(center) + frobenius(disc));
+        // Only the moments of f1 to f3 have an arm: a large spin moment costs nothing of a long one.
+        let (mut size, mut spin) = (T::zero(), T::zero());
+        for &[a, b, c, d] in center.data.0.iter().chain(&disc.data.0) {
+            size += norm(&Vector::from([a, b, c]));
+            spin += d.abs();
+        }
+        let [.., normal] = map.data.0;
+        let reach = frobenius(&map) * size + norm(&Vector::from(normal)) * spin;
+        let rounding = T::count(16) * T::ROUNDOFF * reach * cap;
         if usable([rounding].iter()) { Ok(Self { rounding, ..image }) } else { Err(ContactError::Wrench) }
     }
 
