@@ -188,7 +188,7 @@ fn force_closure_at_its_limits() {
 fn little_spin_friction_closes_in_single_precision() {
     let cube = |m: usize, mus: f32| -> Vec<Contact<f32>> {
         let tip = |i: usize| {
-            let x = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let x = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             let soft = Friction::Soft { mu: 0.5, mus };
             Contact::new(Vector::from([x, 0.0, 0.0]), Vector::from([-x, 0.0, 0.0]), soft).unwrap()
         };
