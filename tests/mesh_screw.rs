@@ -137,3 +137,16 @@ fn queries_are_counted() {
     let seen = pair.counters();
     assert_eq!((seen.collision, seen.distance, seen.contact), (1, 2, 1));
 }
+
+/// Found by fuzzing: it ended at a distance above 0 that a test for collision could not tell from contact.
+#[test]
+fn a_grain_beside_a_boulder_stops_before_rounding_does() {
+    let boulder = cuboid([1.0, 1.0, 1.0]).mesh();
+    let grain = cuboid([1e-20, 1e-20, 1e-20]).mesh();
+    let mut pair = Pair::new(&grain, &boulder);
+    let from = Isometry3::translation(2.0, 0.3, 0.1);
+    let impact = pair.advance(&Screw::new(&from, &Isometry3::translation(0.0, 0.3, 0.1)), 1e-23, 1e-24, 200);
+    let end = Screw::new(&from, &Isometry3::translation(0.0, 0.3, 0.1)).at(impact.s);
+    assert!(!pair.collides(&end), "{impact:?}");
+    assert!(impact.distance < 1e-12, "{impact:?}");
+}

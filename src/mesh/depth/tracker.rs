@@ -48,6 +48,10 @@ const NEARER: f64 = 0.97;
 const JUMP: f64 = 0.1;
 /// The pairs of triangles that a push-out may look at.
 const WORK: usize = 1000;
+/// Every so many ticks a push-out looks for another valley.
+const LOOK: u64 = 8;
+/// And the pairs of triangles that it may look at.
+const LOOK_WORK: usize = 300;
 /// Bisections of the way from a new pose to the query's.
 const BISECTIONS: usize = 8;
 /// A new lower bound is asked for when this fraction of the upper bound is lost.
@@ -114,6 +118,7 @@ pub struct DepthTracker<'m> {
     last: Option<(Isometry3<f64>, Isometry3<f64>)>,
     certified: [Option<Certified>; 2],
     random: Random,
+    ticks: u64,
 }
 
 impl<'m> DepthTracker<'m> {
@@ -125,6 +130,7 @@ impl<'m> DepthTracker<'m> {
             last: None,
             certified: [None; 2],
             random: Random::new(0),
+            ticks: 0,
         }
     }
 
@@ -139,6 +145,7 @@ impl<'m> DepthTracker<'m> {
         self.last = None;
         self.certified = [None; 2];
         self.random = Random::new(0);
+        self.ticks = 0;
     }
 
     /// The free poses that are remembered, four at most.
@@ -175,7 +182,7 @@ impl<'m> DepthTracker<'m> {
         budget: &Budget,
         late: Option<&dyn Fn() -> bool>,
     ) -> MeshDepth {
-        let DepthTracker { solver, known, last, certified, random } = self;
+        let DepthTracker { solver, known, last, certified, random, ticks } = self;
         let a = solver.a;
         let options = DepthOptions {
             max_queries: budget.max_queries,
@@ -241,7 +248,13 @@ impl<'m> DepthTracker<'m> {
                 refine(&mut search, known, 0, motion, STEPS_BESIDE);
             }
         }
-        if known.len() > 1 {
+        *ticks += 1;
+        if ticks.is_multiple_of(LOOK) {
+            if let Some(pushed) = pushout::push_out(&mut search, LOOK_WORK) {
+                search.take(&pushed);
+                remember(known, Known { pose: pushed, trust: None }, metric, pose, 0.0);
+            }
+        } else if known.len() > 1 {
             let beside = 1 + random.below(known.len() - 1);
             refine(&mut search, known, beside, motion, STEPS_BESIDE);
         }

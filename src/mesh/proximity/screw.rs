@@ -12,7 +12,7 @@
 //! the surfaces is d, no contact happens before d / speed (Mirtich 1996).
 
 use super::Pair;
-use super::relative::is_usable;
+use super::relative::{Relative, is_usable};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// The motion of constant twist from one pose (s = 0) to another (s = 1).
@@ -122,7 +122,8 @@ impl Pair<'_> {
     }
 
     /// Moves along the screw until something is in the way: no pose from 0 to the result collides or comes nearer than
-    /// `security`, at least 0; and if it stops for a contact, the distance there is at most `security` + `tolerance`.
+    /// `security`, at least 0; and if it stops for a contact, the distance there is at most `security` + `tolerance`, but for some 1e-13 of the
+    /// coordinates.
     /// One distance query per step, at most `limit` steps.
     pub fn advance(&mut self, screw: &Screw, security: f64, tolerance: f64, limit: u32) -> Impact {
         let start = Impact { s: 0.0, distance: 0.0, stop: Stop::Start };
@@ -134,7 +135,8 @@ impl Pair<'_> {
         let mut s = 0.0;
         for step in 0..=limit {
             let distance = self.distance(&screw.at(s)).distance;
-            let free = distance - security;
+            // What is nearer than rounding counts as a collision.
+            let free = distance - security - 8.0 * Relative::new(&screw.at(s), self.a, self.b).doubt;
             if !(free > 0.0) {
                 // Only rounding brings a later step here: the pose before was free.
                 return if step == 0 { impact } else { Impact { stop: Stop::Contact, ..impact } };

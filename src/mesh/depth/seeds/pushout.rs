@@ -40,10 +40,10 @@ pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>, work: usize) ->
     let mut reach = REACH * search.size;
     let mut most = 0.5 * search.size;
     for _ in 0..STEPS {
-        if !search.goes_on() {
-            return None;
-        }
         loop {
+            if !search.goes_on() {
+                return None;
+            }
             let mut left = work;
             let whole = search.pair.overlaps(&pose, reach, TILT, &mut left, &mut search.scratch.contacts);
             if whole {
@@ -75,6 +75,9 @@ pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>, work: usize) ->
         let step = metric.step(&search.start, &pose, &scratch.constraints, &options, &mut scratch.memory).ok()?;
         pose = step.twist.applied(&pose);
         if search.distance(&pose) > HOPE * search.upper {
+            return None;
+        }
+        if !search.goes_on() {
             return None;
         }
         if !search.pair.collides(&pose) {
