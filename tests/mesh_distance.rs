@@ -156,3 +156,56 @@ fn garbage_neither_panics_nor_hangs() {
         assert!((0.0..=1.0).contains(&impact.s));
     }
 }
+
+/// Slivers whose normals are rounding: such a normal may point along the sliver, and the plane through one corner bounds nothing.
+#[test]
+fn slivers_are_no_farther_than_their_corners() {
+    let mut dice = Dice::new(17);
+    for _ in 0..20_000 {
+        let far = dice.decade(3.0, 9.0);
+        let mut sliver = || {
+            let p = Vector3::from([0; 3].map(|_| far * dice.signed()));
+            let d = Vector3::from([0; 3].map(|_| dice.signed()));
+            let corners: [[f64; 3]; 3] = [p.into(), (p + d).into(), (p + d * dice.unit()).into()];
+            Mesh::new(&corners, &[[0, 1, 2]]).unwrap()
+        };
+        let (a, b) = (sliver(), sliver());
+        let pose =
+            Isometry3::from((b.vertices()[0] - a.vertices()[0]) + Vector3::from([0; 3].map(|_| 2.0 * dice.signed())));
+        let mut pair = Pair::new(&a, &b);
+        let corners = a.vertices().iter().flat_map(|p| b.vertices().iter().map(move |q| (pose * p - q).norm()));
+        let least = corners.fold(f64::MAX, f64::min);
+        let slack = 1e-14 * far;
+        let found = pair.distance(&pose).distance;
+        assert!(found <= least + slack, "{found} {least}");
+        assert!(!pair.distance_greater_than(&pose, least + slack), "{least}");
+        // Whatever query was before.
+        assert!((Pair::new(&b, &a).distance(&pose.inverse()).distance - found).abs() <= slack.max(1e-9 * found));
+    }
+}
+
+/// A closed surface that crosses itself is wound inward in parts, and its reentrant edges stick out there.
+#[test]
+fn tangled_surfaces_are_as_near_as_they_are() {
+    let mut dice = Dice::new(19);
+    let mut solids = 0;
+    for _ in 0..300 {
+        let mut tangle = || {
+            let mut shape = icosphere(0);
+            shape.vertices.iter_mut().for_each(|v| *v = [0; 3].map(|_| dice.signed()));
+            shape.mesh()
+        };
+        let (a, b) = (tangle(), tangle());
+        solids += usize::from(a.is_solid());
+        for _ in 0..4 {
+            let pose = random_pose(&mut dice, 3.0);
+            let mut pair = Pair::new(&a, &b);
+            if !brute_meet(&a, &b, &pose) {
+                let (found, exact) = (pair.distance(&pose).distance, brute_distance(&a, &b, &pose));
+                assert!((found - exact).abs() < 1e-12, "{found} {exact}");
+                assert!(!pair.distance_greater_than(&pose, exact));
+            }
+        }
+    }
+    assert!(solids > 50, "{solids}");
+}

@@ -5,8 +5,9 @@ use super::super::Feature;
 use super::Pair;
 use super::candidate::{Candidate, any, nearest};
 use super::project::project;
-use super::relative::{Relative, is_usable, open, walk};
-use super::triangle::{apart, plane_gap_squared};
+use super::relative::{Relative, open, walk};
+use crate::mesh::pose::is_usable;
+use crate::mesh::triangle::{apart, plane_gap_squared};
 use nalgebra::{Isometry3, Point3};
 use std::ops::ControlFlow;
 
