@@ -279,8 +279,13 @@ fn proximity(dice: &mut Dice, a: &Model, b: &Model, pose: &Isometry3<f64>) {
     if !(distance.distance >= 0.0) || (!meet && distance.distance == 0.0) {
         find("distance", &(distance, meet));
     }
-    if pair.distance_greater_than(pose, distance.distance * (1.0 + 1e-9)) {
-        find("distance is greater than itself", &distance);
+    if !collides && pair.distance_greater_than(pose, distance.distance * (1.0 + 1e-9)) {
+        // By how much, to within a factor of ten.
+        let wrong = (1..9)
+            .rev()
+            .map(|k| 10f64.powi(k - 9))
+            .find(|x| pair.distance_greater_than(pose, distance.distance * (1.0 + x)));
+        find("distance is greater than itself", &(distance, wrong));
     }
     if !collides && proper(pose) && overlap(a, b, pose) {
         find("free by the solid test, but not by brute force", pose);

@@ -209,3 +209,38 @@ fn tangled_surfaces_are_as_near_as_they_are() {
     }
     assert!(solids > 50, "{solids}");
 }
+
+/// Coordinates of up to 1e60 have products of four, but not of six.
+#[test]
+fn distances_at_the_ends_of_what_numbers_can_do() {
+    let (a, b) = (l_shape(), icosphere(1));
+    let mut dice = Dice::new(23);
+    for size in [1e-150, 1e-100, 1e-80, 1e-77, 1e52, 1e57, 1e59] {
+        let [x, y] = [&a, &b].map(|shape| shape.placed(&Isometry3::identity(), size).mesh());
+        for _ in 0..40 {
+            let pose = random_pose(&mut dice, 4.0);
+            let exact = Pair::new(&a.mesh(), &b.mesh()).distance(&pose).distance;
+            let mut far = pose;
+            far.translation.vector *= size;
+            let mut pair = Pair::new(&x, &y);
+            let found = pair.distance(&far).distance;
+            assert!(size < 1e-70 || (found - exact * size).abs() <= 1e-12 * size, "{found:e} {exact} {size:e}");
+            assert!(size < 1e-70 || !pair.distance_greater_than(&far, found * (1.0 + 1e-9)), "{found:e}");
+        }
+    }
+}
+
+/// From inside, a solid's reentrant edges are the nearest, which are not looked at: nothing is proved there.
+#[test]
+fn nothing_is_greater_than_the_distance_of_a_body_inside() {
+    let (l, needle) = (l_shape().mesh(), cuboid([0.01, 0.01, 0.2]).mesh());
+    // Near the reentrant edge (1, 1).
+    let pose = Isometry3::translation(0.9, 0.9, 0.0);
+    let mut pair = Pair::new(&needle, &l);
+    assert!(pair.collides(&pose) && !pair.surfaces_meet(&pose));
+    let least = brute_distance(&needle, &l, &pose);
+    assert!(pair.distance(&pose).distance >= least - 1e-12);
+    for share in [0.5, 1.0, 1.5] {
+        assert!(!pair.distance_greater_than(&pose, share * least));
+    }
+}

@@ -137,7 +137,9 @@ pub(super) fn plane_gap_squared(a: &Triangle, b: &Triangle) -> f64 {
         let (s, t) = (e.dot(&n), f.dot(&n));
         let [x, y, z] = other.each_ref().map(|v| (v - p).dot(&n));
         let gap = (x.min(y).min(z) - s.max(t).max(0.0)).max(s.min(t).min(0.0) - x.max(y).max(z)).max(0.0);
-        if gap > 0.0 { gap * gap / n.norm_squared() } else { 0.0 }
+        let square = n.norm_squared();
+        // A gap of a product of three lengths has no square where that of two still has; too small a normal is no direction.
+        if gap > 0.0 && square.is_normal() { gap * (gap / square) } else { 0.0 }
     };
     along(a, b).max(along(b, a))
 }
