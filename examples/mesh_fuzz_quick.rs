@@ -15,7 +15,6 @@
 //! The first find is printed with its case, and the exit code is 1.
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code, unused_imports)]
 mod common;
 #[path = "../tests/mesh_common/mod.rs"]
 mod mesh_common;

@@ -8,6 +8,7 @@ use common::dice::Dice;
 use common::shared;
 use mesh_common::*;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use qdist::mesh::certificate::SolidError;
 use qdist::mesh::metric::Metric;
 use qdist::mesh::{DepthOptions, DepthSolver, Effort, MeshDepth, Model, Outcome, Pair, Progress, Walk};
 use std::f64::consts::FRAC_PI_4;
@@ -269,4 +270,48 @@ fn the_shared_queries() {
         }
     }
     assert!(10 * good >= 8 * asked, "{good} of {asked}");
+}
+
+/// One of two boxes is wound inward, so the bodies are a polygon soup, and what is inside the other box is free.
+#[test]
+fn a_soup_of_closed_parts_has_no_lower_bound() {
+    let outward = cuboid([1.0; 3]);
+    let soup = model(&outward.and(&cuboid([0.3; 3]).flipped().moved([0.0, 3.0, 0.0])));
+    assert!(!soup.is_solid());
+    assert_eq!(soup.clone().with_pieces(&Default::default()).err(), Some(SolidError::Inverted(1)));
+    let guest = certified(&cuboid([0.2, 0.4, 0.1]));
+    let bounded = soup.clone().with_pieces(&Default::default()).unwrap_or(soup);
+    for x in [0.75, 0.85, 0.95, 1.1] {
+        depth(&guest, &bounded, &Isometry3::translation(x, 0.1, 0.05), guest.disp(), &Default::default());
+    }
+}
+
+/// A quaternion that has been through single precision.
+#[test]
+fn a_rounded_quaternion_is_a_rotation() {
+    let (l, ring) = (model(&l_shape()), model(&torus(16, 8, 1.0, 0.3)));
+    let mut dice = Dice::new(21);
+    for _ in 0..10 {
+        let exact = random_pose(&mut dice, 1.0);
+        let rough = |length: f64| {
+            let rotation = UnitQuaternion::new_unchecked(exact.rotation.into_inner() * length);
+            Isometry3::from_parts(exact.translation, rotation)
+        };
+        let ask = |pose: &Isometry3<f64>| {
+            DepthSolver::new(&l, &ring).depth(
+                pose,
+                l.disp(),
+                &DepthOptions { effort: Effort::Fast, ..Default::default() },
+                None,
+            )
+        };
+        let coarse = ask(&rough(1.0 + 9e-7));
+        assert!((coarse.pose.rotation.norm() - 1.0).abs() < 1e-14);
+        assert!((l.disp().distance(&exact, &coarse.pose) - coarse.upper).abs() < 1e-12, "{}", coarse.upper);
+        let [near, far] =
+            [exact, rough(1.0 + 9e-7)].map(|pose| Pair::new(l.mesh(), ring.mesh()).distance(&pose).distance);
+        assert!((near - far).abs() < 1e-12, "{near} {far}");
+        assert_eq!(ask(&rough(1.0 + 2e-6)).outcome, Outcome::Invalid);
+        assert!(Pair::new(l.mesh(), ring.mesh()).collides(&rough(1.1)));
+    }
 }

@@ -156,3 +156,91 @@ fn garbage_neither_panics_nor_hangs() {
         assert!((0.0..=1.0).contains(&impact.s));
     }
 }
+
+/// Slivers whose normals are rounding: such a normal may point along the sliver, and the plane through one corner bounds nothing.
+#[test]
+fn slivers_are_no_farther_than_their_corners() {
+    let mut dice = Dice::new(17);
+    for _ in 0..20_000 {
+        let far = dice.decade(3.0, 9.0);
+        let mut sliver = || {
+            let p = Vector3::from([0; 3].map(|_| far * dice.signed()));
+            let d = Vector3::from([0; 3].map(|_| dice.signed()));
+            let corners: [[f64; 3]; 3] = [p.into(), (p + d).into(), (p + d * dice.unit()).into()];
+            Mesh::new(&corners, &[[0, 1, 2]]).unwrap()
+        };
+        let (a, b) = (sliver(), sliver());
+        let pose =
+            Isometry3::from((b.vertices()[0] - a.vertices()[0]) + Vector3::from([0; 3].map(|_| 2.0 * dice.signed())));
+        let mut pair = Pair::new(&a, &b);
+        let corners = a.vertices().iter().flat_map(|p| b.vertices().iter().map(move |q| (pose * p - q).norm()));
+        let least = corners.fold(f64::MAX, f64::min);
+        let slack = 1e-14 * far;
+        let found = pair.distance(&pose).distance;
+        assert!(found <= least + slack, "{found} {least}");
+        assert!(!pair.distance_greater_than(&pose, least + slack), "{least}");
+        // Whatever query was before.
+        assert!((Pair::new(&b, &a).distance(&pose.inverse()).distance - found).abs() <= slack.max(1e-9 * found));
+    }
+}
+
+/// A closed surface that crosses itself is wound inward in parts, and its reentrant edges stick out there.
+#[test]
+fn tangled_surfaces_are_as_near_as_they_are() {
+    let mut dice = Dice::new(19);
+    let mut solids = 0;
+    for _ in 0..300 {
+        let mut tangle = || {
+            let mut shape = icosphere(0);
+            shape.vertices.iter_mut().for_each(|v| *v = [0; 3].map(|_| dice.signed()));
+            shape.mesh()
+        };
+        let (a, b) = (tangle(), tangle());
+        solids += usize::from(a.is_solid());
+        for _ in 0..4 {
+            let pose = random_pose(&mut dice, 3.0);
+            let mut pair = Pair::new(&a, &b);
+            if !brute_meet(&a, &b, &pose) {
+                let (found, exact) = (pair.distance(&pose).distance, brute_distance(&a, &b, &pose));
+                assert!((found - exact).abs() < 1e-12, "{found} {exact}");
+                assert!(!pair.distance_greater_than(&pose, exact));
+            }
+        }
+    }
+    assert!(solids > 50, "{solids}");
+}
+
+/// Coordinates of up to 1e60 have products of four, but not of six.
+#[test]
+fn distances_at_the_ends_of_what_numbers_can_do() {
+    let (a, b) = (l_shape(), icosphere(1));
+    let mut dice = Dice::new(23);
+    for size in [1e-150, 1e-100, 1e-80, 1e-77, 1e52, 1e57, 1e59] {
+        let [x, y] = [&a, &b].map(|shape| shape.placed(&Isometry3::identity(), size).mesh());
+        for _ in 0..40 {
+            let pose = random_pose(&mut dice, 4.0);
+            let exact = Pair::new(&a.mesh(), &b.mesh()).distance(&pose).distance;
+            let mut far = pose;
+            far.translation.vector *= size;
+            let mut pair = Pair::new(&x, &y);
+            let found = pair.distance(&far).distance;
+            assert!(size < 1e-70 || (found - exact * size).abs() <= 1e-12 * size, "{found:e} {exact} {size:e}");
+            assert!(size < 1e-70 || !pair.distance_greater_than(&far, found * (1.0 + 1e-9)), "{found:e}");
+        }
+    }
+}
+
+/// From inside, a solid's reentrant edges are the nearest, which are not looked at: nothing is proved there.
+#[test]
+fn nothing_is_greater_than_the_distance_of_a_body_inside() {
+    let (l, needle) = (l_shape().mesh(), cuboid([0.01, 0.01, 0.2]).mesh());
+    // Near the reentrant edge (1, 1).
+    let pose = Isometry3::translation(0.9, 0.9, 0.0);
+    let mut pair = Pair::new(&needle, &l);
+    assert!(pair.collides(&pose) && !pair.surfaces_meet(&pose));
+    let least = brute_distance(&needle, &l, &pose);
+    assert!(pair.distance(&pose).distance >= least - 1e-12);
+    for share in [0.5, 1.0, 1.5] {
+        assert!(!pair.distance_greater_than(&pose, share * least));
+    }
+}

@@ -359,3 +359,34 @@ fn metrics_agree_with_the_shared_queries() {
     }
     assert!(compared > 50);
 }
+
+/// A body that is inside out in parts may have a mean square displacement that is negative.
+#[test]
+fn a_tangled_surface_has_no_object_norm() {
+    let ((mut points, mut triangles), (small, inward)) = (cuboid([1.0; 3]), cuboid([0.9; 3]));
+    triangles.extend(inward.iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
+    points.extend(small.iter().map(|p| p + 9.0 * Vector3::z()));
+    assert_eq!(MassProperties::new(&points, &triangles), Err(MassError::Tangled));
+}
+
+/// Their smallest moments are lost in rounding.
+#[test]
+fn slender_bodies_have_an_object_norm() {
+    let mut dice = Dice::new(6);
+    for half in [1e-3, 1e-6, 1e-9].iter().flat_map(|&thin| [[1.0, 1.0, thin], [1.0, thin, thin]]) {
+        for _ in 0..50 {
+            let (points, triangles) = cuboid(half);
+            let turned = pose(&mut dice, 1.0);
+            let points: Vec<_> = points.iter().map(|p| turned * p).collect();
+            let mass = match MassProperties::new(&points, &triangles) {
+                Ok(mass) => mass,
+                Err(error) => {
+                    assert!(error == MassError::Flat && half[1] < 1e-5, "{error:?} {half:?}");
+                    continue;
+                }
+            };
+            let value = Sigma::new(&mass).distance(&Isometry3::identity(), &pose(&mut dice, 1.0));
+            assert!(value > 0.0 && value.is_finite(), "{value}");
+        }
+    }
+}

@@ -57,6 +57,9 @@ pub enum MassError {
     },
     /// The surface encloses no volume beyond rounding.
     Flat,
+    /// The surface crosses itself, and so much of it is wound inward that the integrals are those of no body: the centre of mass is
+    /// out of the box, or a second moment is negative.
+    Tangled,
 }
 
 impl fmt::Display for MassError {
@@ -70,17 +73,21 @@ impl fmt::Display for MassError {
             }
             MassError::Inverted { volume } => write!(f, "the surface is inside out: volume {volume}"),
             MassError::Flat => write!(f, "the surface encloses no volume"),
+            MassError::Tangled => write!(f, "the surface crosses itself and is inside out in parts"),
         }
     }
 }
 
 impl std::error::Error for MassError {}
 
+/// Rounding of the centre, in sizes of the box, and of second moments, in the largest.
+const TANGLED: f64 = 1e-9;
+
 impl MassProperties {
     /// Integrates over the solid that these triangles bound (counterclockwise seen from outside).
     ///
     /// # Errors
-    /// [`MassError`]: bad indices or coordinates, a surface that is open, inside out or flat. Where parts overlap,
+    /// [`MassError`]: bad indices or coordinates, a surface that is open, inside out, flat or tangled. Where parts overlap,
     /// their volumes add up.
     ///
     /// Cost: sorts the edges; O(n log n).
@@ -128,6 +135,10 @@ impl MassProperties {
         }
         let centre = first / volume;
         let central = second - centre * centre.transpose() * volume;
+        let moments = central.symmetric_eigenvalues();
+        if centre.amax() > 0.5 + TANGLED || !(moments.min() >= -TANGLED * moments.max()) {
+            return Err(MassError::Tangled);
+        }
         let inertia = Matrix3::identity() * central.trace() - central;
         let properties = MassProperties {
             volume: scaled(volume, 3),

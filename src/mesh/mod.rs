@@ -30,11 +30,14 @@
 //!  optimize                   the best small motion that contacts allow
 //!   mass  hull                volume, centre, inertia; vertices of the convex hull
 //! proximity                   two meshes: solid test, distance, contacts, motion along a screw
+//!  pose                       which poses are accepted, and what they mean
 //!  surface                    a mesh: vertices, triangles, and all that is derived from them once
 //!   check                     what is wrong with it, and whether it bounds a solid
 //!   cones                     a tree of cones of normals over the triangles
+//!   crossing                  whether it crosses itself
 //!   bvh                       a tree of boxes over the triangles
 //!    topology                 edges, neighbours, components, convexity
+//!    triangle                 two triangles, a point and a triangle, two segments
 //! ```
 //!
 //! # Solids and soups
@@ -47,15 +50,18 @@ mod bvh;
 pub mod certificate;
 pub mod check;
 mod cones;
+mod crossing;
 mod depth;
 pub mod hull;
 pub mod mass;
 pub mod metric;
 mod model;
 pub mod optimize;
+mod pose;
 pub mod proximity;
 mod surface;
 pub mod topology;
+mod triangle;
 
 pub use check::Report;
 pub use depth::{

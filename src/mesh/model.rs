@@ -86,6 +86,11 @@ impl Model {
     /// Cost: up to a second for 3,000 triangles.
     pub fn with_pieces(mut self, options: &BuildOptions) -> Result<Model, SolidError> {
         let mut pieces = Pieces::new(self.mesh.vertices(), self.mesh.triangles(), options)?;
+        // A bound for what is inside is none for queries that see a surface only.
+        if !self.is_solid() {
+            let inverted = self.mesh.report().inverted_components.first();
+            return Err(inverted.map_or(SolidError::Volume, |&component| SolidError::Inverted(component)));
+        }
         if let Some(mass) = &self.mass {
             // Without it, only the largest displacement has a bound.
             let _ = pieces.weigh(&mass.centre, &(mass.inertia / mass.volume));

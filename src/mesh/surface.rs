@@ -3,6 +3,7 @@
 use super::bvh::Bvh;
 use super::check::Report;
 use super::cones::{Cap, caps};
+use super::crossing::crosses_itself;
 use super::topology::Topology;
 use nalgebra::{Point3, Vector3};
 
@@ -90,14 +91,15 @@ impl Mesh {
         }
         let mut topology = Topology::new(&vertices, triangles);
         let report = Report::new(&vertices, triangles, &topology);
-        topology.set_owners(vertices.len(), triangles, report.solid);
         let corners: Vec<_> = triangles.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
         let bvh = Bvh::new(&corners);
+        let scale = corners.iter().flatten().fold(0.0f64, |m, p| m.max(p.coords.amax()));
+        let plain = report.solid && !crosses_itself(&corners, &bvh, scale);
+        topology.set_owners(vertices.len(), triangles, plain);
         let normals: Vec<_> = corners.iter().map(unit_normal).collect();
         let caps = if report.solid { caps(&bvh, vertices.len(), triangles, &topology, &normals) } else { Vec::new() };
         let extremes = extremes(&vertices, triangles, &topology);
         let vertex_normals = vertex_normals(vertices.len(), triangles, &corners);
-        let scale = corners.iter().flatten().fold(0.0f64, |m, p| m.max(p.coords.amax()));
         Ok(Mesh {
             vertices,
             triangles: triangles.to_vec(),

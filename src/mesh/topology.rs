@@ -145,11 +145,11 @@ impl Topology {
         topology
     }
 
-    /// Chooses the candidates and their owners.
-    pub(super) fn set_owners(&mut self, vertex_count: usize, triangles: &[[u32; 3]], solid: bool) {
+    /// Chooses the candidates and their owners. Of a `plain` surface, one of a solid that does not cross itself, reentrant edges are none.
+    pub(super) fn set_owners(&mut self, vertex_count: usize, triangles: &[[u32; 3]], plain: bool) {
         let candidate = |kind| match kind {
             EdgeKind::Flat => false,
-            EdgeKind::Reentrant => !solid,
+            EdgeKind::Reentrant => !plain,
             EdgeKind::Convex | EdgeKind::Open | EdgeKind::Irregular => true,
         };
         let mut vertex_taken = vec![true; vertex_count];

@@ -20,6 +20,8 @@ pub enum SolidError {
     Open(u32, u32),
     /// The signed volume is not positive: the mesh is wound inside out, or flat.
     Volume,
+    /// This component is wound inside out and is no cavity ([`Report`](crate::mesh::Report)), so the mesh is a polygon soup.
+    Inverted(u32),
 }
 
 /// Coordinates above this are refused: sixth powers must stay finite.

@@ -7,6 +7,7 @@ use super::walk::{Bounds, CONTACTS, ITERATIONS, TRUST, follow, walk};
 use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
+use crate::mesh::pose::{is_usable, normalised};
 use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::{Isometry3, Translation3};
 
@@ -93,6 +94,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         watch: Option<Watch<'w>>,
     ) -> Self {
         let before = solver.pair.counters();
+        let pose = normalised(pose);
         Search {
             size: solver.a.mesh().diagonal(),
             pair: &mut solver.pair,
@@ -104,9 +106,9 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             sigma: solver.a.sigma(),
             options,
             watch,
-            start: *pose,
+            start: pose,
             random: Random::new(options.seed),
-            pose: *pose,
+            pose,
             upper: f64::INFINITY,
             lower: 0.0,
             walks: 0,
@@ -186,7 +188,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     /// Whether the query's pose and options are proper numbers.
     pub fn is_valid(&self) -> bool {
         let here = self.metric.distance(&self.start, &self.start);
-        self.options.relative >= 0.0 && here.is_finite() && usable(&self.start)
+        self.options.relative >= 0.0 && here.is_finite() && is_usable(&self.start)
     }
 
     /// How the search ended.
@@ -263,10 +265,11 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
 
     /// Walks from the caller's pose, or from where pushing out from there leads.
     fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
-        if !usable(pose) || !self.goes_on() {
+        if !is_usable(pose) || !self.goes_on() {
             return;
         }
-        let seed = if self.pair.collides(pose) { pushout::push_out_from(self, pose, plan.work) } else { Some(*pose) };
+        let pose = normalised(pose);
+        let seed = if self.pair.collides(&pose) { pushout::push_out_from(self, &pose, plan.work) } else { Some(pose) };
         if let Some(seed) = seed {
             walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
         }
@@ -314,10 +317,4 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let s = self.pair.bisect(&screw, 1.0, 0.0, tolerance);
         screw.at(s)
     }
-}
-
-/// Finite, and a rotation.
-fn usable(pose: &Isometry3<f64>) -> bool {
-    let norm = pose.rotation.quaternion().norm();
-    (norm - 1.0).abs() < 1e-6 && pose.translation.vector.iter().all(|x| x.abs() <= crate::mesh::MAX_COORDINATE)
 }

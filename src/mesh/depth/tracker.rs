@@ -26,6 +26,7 @@ use super::walk::{Bounds, LEAST, TRUST, follow};
 use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress};
 use crate::mesh::metric::{Certificate, Metric};
 use crate::mesh::optimize::Twist;
+use crate::mesh::pose::normalised;
 use crate::mesh::{Model, Screw};
 use nalgebra::Isometry3;
 
@@ -156,15 +157,16 @@ impl<'m> DepthTracker<'m> {
     /// Takes over the pose of an answer from elsewhere, for whatever pose of the query it was found. It counts from the next update, if it is
     /// better there or far from what is known. Its freedom is tested here (one query); false if it is not free.
     pub fn merge(&mut self, answer: &MeshDepth) -> bool {
-        let free = answer.upper.is_finite() && !self.solver.pair.collides(&answer.pose);
+        let pose = normalised(&answer.pose);
+        let free = answer.upper.is_finite() && !self.solver.pair.collides(&pose);
         if free {
             let Some((start, _)) = self.last else {
                 self.known.truncate(POSES - 1);
-                self.known.push(Known { pose: answer.pose, trust: None });
+                self.known.push(Known { pose, trust: None });
                 return true;
             };
             let (disp, size) = (self.solver.a.disp(), self.solver.a.mesh().diagonal());
-            remember(&mut self.known, Known { pose: answer.pose, trust: None }, disp, &start, SAME * size);
+            remember(&mut self.known, Known { pose, trust: None }, disp, &start, SAME * size);
         }
         free
     }
@@ -195,6 +197,7 @@ impl<'m> DepthTracker<'m> {
         if !search.is_valid() {
             return search.answer(Outcome::Invalid);
         }
+        let pose = &{ search.start };
         let same = SAME * search.size;
         if !search.pair.collides(pose) {
             remember(known, Known { pose: *pose, trust: None }, metric, pose, same);

@@ -43,7 +43,8 @@ impl Sigma {
         let gyration = mass.inertia / mass.volume;
         // The trace of the inertia tensor is twice the integral of |x|^2.
         let frame = BodyFrame::principal(mass.centre, &gyration, (gyration.trace() / 2.0).sqrt());
-        let gyration = (frame.axes.transpose() * gyration * frame.axes).diagonal();
+        // A needle's smallest is lost in rounding.
+        let gyration = (frame.axes.transpose() * gyration * frame.axes).diagonal().map(|x| x.max(0.0));
         Sigma { frame, gyration }
     }
 

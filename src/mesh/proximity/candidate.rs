@@ -6,7 +6,7 @@
 
 use super::super::{Feature, Mesh};
 use super::relative::Relative;
-use super::triangle::{Place, nearest_on_segments, nearest_on_triangle};
+use crate::mesh::triangle::{Place, nearest_on_segments, nearest_on_triangle};
 use nalgebra::Point3;
 
 /// Two features and their nearest points, in the frame of B.

@@ -10,8 +10,9 @@
 use super::super::{EdgeKind, Feature, Mesh};
 use super::Pair;
 use super::candidate::{Candidate, candidates};
-use super::relative::{Relative, is_usable, walk_culled};
-use super::triangle::plane_gap_squared;
+use super::relative::{Relative, walk_culled};
+use crate::mesh::pose::is_usable;
+use crate::mesh::triangle::plane_gap_squared;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::ops::ControlFlow;
 

@@ -5,8 +5,9 @@ use super::super::Feature;
 use super::Pair;
 use super::candidate::{Candidate, any, nearest};
 use super::project::project;
-use super::relative::{Relative, is_usable, open, walk};
-use super::triangle::{apart, plane_gap_squared};
+use super::relative::{Relative, open, walk};
+use crate::mesh::pose::is_usable;
+use crate::mesh::triangle::{apart, plane_gap_squared};
 use nalgebra::{Isometry3, Point3};
 use std::ops::ControlFlow;
 
@@ -26,7 +27,8 @@ pub struct Distance {
 }
 
 impl Pair<'_> {
-    /// The distance of the surfaces. A body inside another has a positive one: [`Pair::collides`] knows what is inside.
+    /// The distance of the surfaces. A body inside another has a positive one: [`Pair::collides`] knows what is inside. Then it is only an
+    /// upper bound, between points of both surfaces: a solid's reentrant edges are not looked at, which from inside may be the nearest.
     pub fn distance(&mut self, pose: &Isometry3<f64>) -> Distance {
         self.counters.distance += 1;
         let origin = Point3::origin();
@@ -101,7 +103,7 @@ impl Pair<'_> {
         best
     }
 
-    /// Whether the surfaces are proved to be farther apart than `distance`, at least 0. In doubt they are not.
+    /// Whether the surfaces are proved to be farther apart than `distance`, at least 0. In doubt they are not, nor where a body is inside another.
     pub fn distance_greater_than(&mut self, pose: &Isometry3<f64>, distance: f64) -> bool {
         self.counters.distance += 1;
         if !is_usable(pose) || !(distance >= 0.0) {
@@ -126,6 +128,7 @@ impl Pair<'_> {
             self.nearest = pair;
             return false;
         }
-        true
+        // From inside, reentrant edges may be the nearest, which nothing has looked at.
+        !self.contained(&relative)
     }
 }

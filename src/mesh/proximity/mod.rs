@@ -18,7 +18,7 @@
 //!
 //! # Poses
 //!
-//! A pose that is not finite, whose quaternion is not near unit length, or that moves farther than
+//! A quaternion means the rotation that it is over its length. A pose that is not finite, whose quaternion is not of unit length to 1e-6, or that moves farther than
 //! [`MAX_COORDINATE`](super::MAX_COORDINATE) is never free: it collides, has distance 0 and no contacts.
 
 mod boxes;
@@ -30,16 +30,17 @@ mod lanes;
 mod project;
 mod relative;
 mod screw;
-mod triangle;
 
 pub use contact::Contact;
 pub use distance::Distance;
 pub use screw::{Impact, Screw, Stop};
 
 use super::Mesh;
+use super::pose::is_usable;
+use super::triangle;
 use inside::is_inside;
 use nalgebra::Isometry3;
-use relative::{Relative, is_usable, walk};
+use relative::{Relative, walk};
 use std::ops::ControlFlow;
 
 /// How many queries a pair has answered.

@@ -3,8 +3,8 @@
 use super::super::Mesh;
 use super::super::bvh::{Below, Node};
 use super::candidate::feature;
-use super::triangle::nearest_on_triangle;
 use crate::mesh::Feature;
+use crate::mesh::triangle::nearest_on_triangle;
 use nalgebra::Point3;
 
 /// A point of a mesh, in the mesh's frame.

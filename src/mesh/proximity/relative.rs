@@ -11,17 +11,10 @@
 
 use super::super::Mesh;
 use super::super::bvh::{Below, Node};
+use super::super::pose::normalised;
 use super::boxes::Boxes;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use std::ops::ControlFlow;
-
-/// A pose that queries accept: finite, with a translation below 1e60.
-pub(super) fn is_usable(pose: &Isometry3<f64>) -> bool {
-    let q = pose.rotation.quaternion();
-    q.norm_squared() > 0.5
-        && q.norm_squared() < 2.0
-        && pose.translation.vector.iter().all(|x| x.abs() <= super::super::MAX_COORDINATE)
-}
 
 /// One query's relative pose.
 #[derive(Clone, Debug)]
@@ -35,7 +28,7 @@ pub(super) struct Relative {
 
 impl Relative {
     pub fn new(pose: &Isometry3<f64>, a: &Mesh, b: &Mesh) -> Relative {
-        let rotation = *pose.rotation.to_rotation_matrix().matrix();
+        let rotation = *normalised(pose).rotation.to_rotation_matrix().matrix();
         let translation = pose.translation.vector;
         let doubt = 16.0 * f64::EPSILON * (3.0 * a.scale() + translation.amax() + b.scale());
         Relative { absolute: rotation.abs(), rotation, translation, doubt }

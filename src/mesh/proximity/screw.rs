@@ -12,7 +12,8 @@
 //! the surfaces is d, no contact happens before d / speed (Mirtich 1996).
 
 use super::Pair;
-use super::relative::{Relative, is_usable};
+use super::relative::Relative;
+use crate::mesh::pose::{is_usable, normalised};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// The motion of constant twist from one pose (s = 0) to another (s = 1).
@@ -27,16 +28,17 @@ pub struct Screw {
 impl Screw {
     /// The shorter way round.
     pub fn new(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Screw {
+        let (from, to) = (normalised(from), normalised(to));
         let turn = to.rotation * from.rotation.inverse();
         let v = turn.imag();
         let sine = v.norm();
         let flip = if turn.w < 0.0 { -1.0 } else { 1.0 };
         let angle = 2.0 * sine.atan2(turn.w.abs());
         let axis = if sine > 0.0 { Unit::new_unchecked(v * (flip / sine)) } else { Vector3::x_axis() };
-        Screw { from: *from, to: *to, axis, angle }
+        Screw { from, to, axis, angle }
     }
 
-    /// The pose at s; 0 and 1 give the two poses as they are.
+    /// The pose at s; 0 and 1 give the two poses as they are, their quaternions normalised.
     pub fn at(&self, s: f64) -> Isometry3<f64> {
         if s == 0.0 {
             return self.from;

@@ -126,14 +126,20 @@ pub(super) fn nearest_on_segments(p: &Point3<f64>, d: &Vector3<f64>, q: &Point3<
     }
 }
 
-/// A lower bound of the squared distance: the gaps along both normals.
+/// A lower bound of the squared distance, to rounding: the gaps along both normals.
+///
+/// The normal of a sliver may be anything, even along the sliver, so each triangle casts a shadow on its own normal too.
 #[inline]
 pub(super) fn plane_gap_squared(a: &Triangle, b: &Triangle) -> f64 {
     let along = |[p, q, r]: &Triangle, other: &Triangle| {
-        let n = (q - p).cross(&(r - p));
+        let (e, f) = (q - p, r - p);
+        let n = e.cross(&f);
+        let (s, t) = (e.dot(&n), f.dot(&n));
         let [x, y, z] = other.each_ref().map(|v| (v - p).dot(&n));
-        let gap = x.min(y).min(z).max(-x.max(y).max(z)).max(0.0);
-        if gap > 0.0 { gap * gap / n.norm_squared() } else { 0.0 }
+        let gap = (x.min(y).min(z) - s.max(t).max(0.0)).max(s.min(t).min(0.0) - x.max(y).max(z)).max(0.0);
+        let square = n.norm_squared();
+        // A gap of a product of three lengths has no square where that of two still has; too small a normal is no direction.
+        if gap > 0.0 && square.is_normal() { gap * (gap / square) } else { 0.0 }
     };
     along(a, b).max(along(b, a))
 }
