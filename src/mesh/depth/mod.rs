@@ -16,7 +16,7 @@
 //!   who may take them from stored [`ContactSamples`].
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what contacts say of motions near by; `sampling` and `branching` are the walk's other kinds of step.
-//! * `search` keeps the best pose and the budget, and says when to stop.
+//! * `search` keeps the best pose and the budget; `plan` says how much is done, and when more is of no use.
 //! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
@@ -37,6 +37,7 @@
 
 mod branching;
 mod contact_space;
+mod plan;
 mod random;
 mod sampling;
 mod search;
@@ -64,7 +65,7 @@ pub enum Walk {
     #[default]
     Linearised,
     /// The same with unions of constraints where convex corners meet corners or edges, each member in turn (sections IV-A and IV-B.2 of
-    /// the paper). It finds what the linearised walk finds, and takes longer.
+    /// the paper). From a seed it finds what the linearised walk finds, and takes longer; the last walk of a linearised search is of this kind.
     Branching,
     /// Random samples on the contacts (section IV-B.1 of the paper).
     Sampling,
@@ -184,6 +185,8 @@ struct Scratch {
     branches: Branches,
     constraints: Vec<Constraint>,
     memory: StepMemory,
+    /// Where walks of this query ended.
+    ends: Vec<Isometry3<f64>>,
 }
 
 impl<'m> DepthSolver<'m> {
@@ -201,6 +204,7 @@ impl<'m> DepthSolver<'m> {
                 branches: Branches::default(),
                 constraints: Vec::new(),
                 memory: StepMemory::new(walk::CONTACTS),
+                ends: Vec::new(),
             },
         }
     }

@@ -1,15 +1,19 @@
 //! The state of one query: the best pose so far, the budget, and the order of things.
 
+use super::plan::Plan;
 use super::random::Random;
 use super::seeds::pushout;
 use super::seeds::rays::{self, Seed};
 use super::walk::{Bounds, CONTACTS, ITERATIONS, TRUST, follow, walk};
-use super::{DepthOptions, DepthSolver, Effort, MeshDepth, Outcome, Progress, Scratch, Watch};
+use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Walk, Watch};
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
 use crate::mesh::pose::{is_usable, normalised};
 use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::{Isometry3, Translation3};
+
+/// Walks whose ends are nearer to the best pose than this fraction of its value have found it.
+const SAME: f64 = 0.05;
 
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
@@ -32,53 +36,12 @@ pub(super) struct Search<'s, 'm, 'w> {
     pub upper: f64,
     pub lower: f64,
     pub walks: u32,
+    /// How the walks step.
+    pub walk: Walk,
     /// Share of the work that is done.
     fraction: f64,
     stop: Option<Outcome>,
     before: Counters,
-}
-
-/// What an effort means.
-struct Plan {
-    rays: rays::Plan,
-    /// Rounds of rays and walks; all but the first only where the bracket leaves room.
-    rounds: usize,
-    /// Pairs of triangles that pushing out may look at in one query.
-    work: usize,
-    /// The least gain of an iteration of the walks.
-    coarse: f64,
-    /// That of the last walk, from the best pose.
-    gain: f64,
-    /// A walk is given up when it will not come below this multiple of the best.
-    hope: f64,
-}
-
-/// Meshes whose numbers of triangles have a smaller product than this are quick, and searched more.
-const QUICK: f64 = 1e5;
-/// By this factor at most.
-const MOST_MORE: f64 = 6.0;
-
-fn plan(effort: Effort, a: &Model, b: &Model) -> Plan {
-    let pairs = a.mesh().triangles().len() as f64 * b.mesh().triangles().len() as f64;
-    let more = (QUICK / pairs).sqrt().sqrt().clamp(1.0, MOST_MORE);
-    let times = |count: usize| (count as f64 * more) as usize;
-    let rays = |translations, screws, worse, seeds| rays::Plan {
-        translations,
-        screws: times(screws),
-        worse,
-        seeds: times(seeds),
-    };
-    match effort {
-        Effort::Fast => {
-            Plan { rays: rays(20, 12, 1.1, 2), rounds: 1, work: 4_000, coarse: 3e-2, gain: 1e-3, hope: 0.97 }
-        }
-        Effort::Default => {
-            Plan { rays: rays(32, 64, 1.3, 5), rounds: 4, work: 8_000, coarse: 3e-2, gain: 1e-4, hope: 0.95 }
-        }
-        Effort::Heavy => {
-            Plan { rays: rays(128, 512, 1.6, 40), rounds: 1, work: 200_000, coarse: 1e-4, gain: 1e-5, hope: 1.2 }
-        }
-    }
 }
 
 fn total(c: &Counters) -> u64 {
@@ -94,6 +57,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         watch: Option<Watch<'w>>,
     ) -> Self {
         let before = solver.pair.counters();
+        solver.scratch.ends.clear();
         let pose = normalised(pose);
         Search {
             size: solver.a.mesh().diagonal(),
@@ -112,6 +76,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             upper: f64::INFINITY,
             lower: 0.0,
             walks: 0,
+            walk: options.walk,
             fraction: 0.0,
             stop: None,
             before,
@@ -128,7 +93,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
         self.lower = self.certify();
-        let plan = plan(self.options.effort, self.a, self.b);
+        let plan = Plan::new(self.options.effort, self.a, self.b, self.metric.certificate());
         self.leave_by_the_proof();
         let escape = rays::escape(&mut self);
         for pose in self.options.poses {
@@ -143,13 +108,18 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             && self.goes_on()
             && let Some(seed) = pushout::push_out(&mut self, plan.work)
         {
-            walk(&mut self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+            self.walk(&seed, plan.gain, f64::INFINITY);
         }
         for round in 1..plan.rounds {
-            if self.options.rays && self.may_be_much_less() {
-                let best = Seed { pose: self.pose, value: self.upper };
-                self.explore(&plan, round, &best);
+            if !self.options.rays || !plan.patience.goes_on(round, self.lower, self.upper, self.returns()) {
+                break;
             }
+            let best = Seed { pose: self.pose, value: self.upper };
+            self.explore(&plan, round, &best);
+        }
+        // Where corners meet corners, planes stop a walk short of its end; the last one takes unions instead.
+        if self.walk == Walk::Linearised {
+            self.walk = Walk::Branching;
         }
         self.refine(plan.gain);
         self.polish();
@@ -167,14 +137,27 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
 
     /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
     fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
-        let seeds = if self.options.rays { rays::cast(self, &plan.rays, known) } else { vec![*known] };
+        let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
         // The best pose is refined in the end.
         let seeds = seeds.iter().filter(|seed| round == 0 || seed.pose != known.pose);
         for (k, seed) in seeds.enumerate() {
             self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
-            let hopeless = self.upper * plan.hope;
-            walk(self, &seed.pose, &Bounds { gain: plan.coarse, hopeless });
+            self.walk(&seed.pose, plan.coarse, self.upper * plan.hope);
         }
+    }
+
+    /// Walks from a free pose, and notes where that ends.
+    fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
+        if self.goes_on() {
+            let end = walk(self, from, &Bounds { gain, hopeless });
+            self.scratch.ends.push(end);
+        }
+    }
+
+    /// How many walks have ended at the best pose.
+    fn returns(&self) -> usize {
+        let at_best = |end: &&Isometry3<f64>| self.metric.distance(&self.pose, end) < SAME * self.upper;
+        self.scratch.ends.iter().filter(at_best).count()
     }
 
     /// Walks on from the best pose.
@@ -271,7 +254,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let pose = normalised(pose);
         let seed = if self.pair.collides(&pose) { pushout::push_out_from(self, &pose, plan.work) } else { Some(pose) };
         if let Some(seed) = seed {
-            walk(self, &seed, &Bounds { gain: plan.gain, hopeless: f64::INFINITY });
+            self.walk(&seed, plan.gain, f64::INFINITY);
         }
     }
 

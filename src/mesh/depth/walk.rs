@@ -2,8 +2,9 @@
 //!
 //! Every iterate is free. At one, the contacts within a margin say to first order how A may move, n.(v + w x r) >= -(gap - clearance),
 //! and the metric's step says which of these motions brings A nearest to the start. A pair of features at a local minimum of the distance has
-//! one normal, along the gap; so a corner that faces a corner is one plane that either may slide along, and unions of constraints
-//! (section IV-A) arise only where a gap vanishes, which the clearance prevents.
+//! one normal, along the gap; so a corner that faces a corner is one plane that either may slide along. Where the gap is small that plane turns
+//! fast, and a walk round the corner creeps; the last walk, from the best pose, takes the union of what the faces forbid instead (section IV-A,
+//! `branching`).
 //!
 //! Contacts that would become local minima when A turns a little count too: where a corner lies near an edge, the corner on the face and the
 //! edge on the edge are minima in turns, and a walk that sees only one of them at a time goes to and fro between both.
@@ -60,19 +61,14 @@ enum Freedom {
     Motion,
 }
 
-/// Walks from a free pose, and offers where it ends.
-pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) {
-    if !search.goes_on() {
-        return;
-    }
+/// Walks from a free pose, and offers where it ends. Returns that pose.
+pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
     let mut pose = search.slide(from, 0.2 * MARGIN * search.size);
-    if from.rotation == search.start.rotation && search.options.walk == Walk::Linearised {
+    if from.rotation == search.start.rotation && search.walk == Walk::Linearised {
         let bounds = Bounds { gain: TRANSLATION_GAIN, ..*bounds };
         pose = advance(search, &pose, TRUST * search.size, ITERATIONS, Freedom::Translation, &bounds).0;
     }
-    if search.goes_on() {
-        follow(search, &pose, TRUST * search.size, ITERATIONS, bounds);
-    }
+    follow(search, &pose, TRUST * search.size, ITERATIONS, bounds).0
 }
 
 /// Walks from a free pose near the boundary, with a first trust region and so many steps, and offers where it ends. Returns that pose, and
@@ -145,7 +141,7 @@ fn step(
     clearance: f64,
     freedom: Freedom,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
-    let found = match search.options.walk {
+    let found = match search.walk {
         Walk::Linearised => linear_step(search, pose, trust, margin, clearance, freedom)?,
         Walk::Branching => branched_step(search, pose, trust, margin, clearance)?,
         Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,

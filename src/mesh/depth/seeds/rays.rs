@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 /// How many rays, and which of them become seeds.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Translations, evenly spread.
+    /// Translations, evenly spread; in further rounds half as many.
     pub translations: usize,
     /// Random screws.
     pub screws: usize,
@@ -58,10 +58,10 @@ pub fn escape(search: &mut Search) -> Option<Seed> {
     None
 }
 
-/// Translations into all directions, then random screws. Returns the best and diverse.
-pub fn cast(search: &mut Search, plan: &Plan, escape: &Seed) -> Vec<Seed> {
-    let mut found = vec![*escape];
-    let mut best = escape.value;
+/// Translations into all directions, then random screws. Returns the best and diverse of them and of a seed that is known.
+pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec<Seed> {
+    let mut found = vec![*known];
+    let mut best = known.value;
     let mut shoot = |search: &mut Search, linear, angular| {
         if search.goes_on()
             && let Some(seed) = ray(search, linear, angular, plan.worse * best)
@@ -71,8 +71,9 @@ pub fn cast(search: &mut Search, plan: &Plan, escape: &Seed) -> Vec<Seed> {
         }
     };
     let turn = search.random.rotation();
-    for k in 0..plan.translations {
-        shoot(search, turn * on_sphere(k, plan.translations), Vector3::zeros());
+    let translations = if round == 0 { plan.translations } else { plan.translations / 2 };
+    for k in 0..translations {
+        shoot(search, turn * on_sphere(k, translations), Vector3::zeros());
     }
     for _ in 0..plan.screws {
         let (linear, angular) = (search.random.direction(), search.random.direction());
