@@ -507,7 +507,7 @@ static void tracker(void) {
 
     /* What is wrong, and nothing is written. */
     CHECK(qdist_mesh_budget_default(NULL) == QDIST_ERROR_NULL);
-    CHECK(budget.struct_size == sizeof budget && budget.max_queries == 16 && budget.probes == 1 && budget.certify == 1 && budget.late == NULL);
+    CHECK(budget.struct_size == sizeof budget && budget.max_queries == 16 && budget.probes == 4 && budget.certify == 1 && budget.late == NULL);
     memset(&depth, 0, sizeof depth);
     CHECK(qdist_mesh_tracker_update(tracker, &pose, NULL, &depth) == QDIST_ERROR_STRUCT_SIZE && depth.upper == 0);
     CHECK(qdist_mesh_tracker_merge(tracker, &depth, &taken) == QDIST_ERROR_STRUCT_SIZE);

@@ -43,9 +43,14 @@ pub struct Patience {
 }
 
 impl Patience {
+    /// Whether so many walks that have ended at the best pose are enough.
+    pub fn is_satisfied(&self, returns: usize) -> bool {
+        returns >= self.returns
+    }
+
     /// Whether another round is wanted after so many, when so many walks have ended at the best pose.
     pub fn goes_on(&self, rounds: usize, lower: f64, upper: f64, returns: usize) -> bool {
-        returns < self.returns && upper - self.near * lower > lower * (rounds as f64 / self.slope)
+        !self.is_satisfied(returns) && upper - self.near * lower > lower * (rounds as f64 / self.slope)
     }
 }
 

@@ -143,6 +143,9 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         for (k, seed) in seeds.enumerate() {
             self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
             self.walk(&seed.pose, plan.coarse, self.upper * plan.hope);
+            if plan.patience.is_satisfied(self.returns()) {
+                break;
+            }
         }
     }
 

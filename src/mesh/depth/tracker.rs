@@ -50,7 +50,7 @@ const JUMP: f64 = 0.1;
 /// The pairs of triangles that a push-out may look at.
 const WORK: usize = 1000;
 /// Every so many ticks a push-out looks for another valley.
-const LOOK: u64 = 8;
+const LOOK: u64 = 4;
 /// And the pairs of triangles that it may look at.
 const LOOK_WORK: usize = 300;
 /// Bisections of the way from a new pose to the query's.
@@ -75,9 +75,9 @@ pub struct Budget {
 }
 
 impl Default for Budget {
-    /// 16 queries, 1 probe, fast certificates.
+    /// 16 queries, 4 probes, fast certificates.
     fn default() -> Self {
-        Budget { max_queries: 16, relative: 1e-3, probes: 1, certificate: Some(Effort::Fast) }
+        Budget { max_queries: 16, relative: 1e-3, probes: 4, certificate: Some(Effort::Fast) }
     }
 }
 
