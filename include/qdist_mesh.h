@@ -465,7 +465,7 @@ typedef struct {
     uint64_t max_queries;
     // The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     double relative;
-    // Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 1.
+    // Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
     uint32_t probes;
     // 1 (default): lower bounds are renewed when a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
     uint32_t certify;

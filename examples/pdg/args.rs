@@ -12,7 +12,8 @@ usage: pdg --queries FILE.json [options]                          the queries of
        pdg A B --pose qw,qx,qy,qz,tx,ty,tz [--pose ...] [options]  two mesh files (OBJ, STL, PLY, OFF); without a pose, what is wrong with them
        pdg --table1 [--queries FILE.json] [options]               the paper's Table I beside ours
 options:
-  --metric disp|sigma          the largest displacement, or the root mean square one (the root of the object norm); else both
+  --metric disp|sigma          the largest displacement, or the root mean square one (the root of the object norm); else both,
+                               with DISP's pose as a seed of the other
   --effort fast|default|heavy  how long to search
   --seed N                     number of the random sequence, 0 otherwise
   --samples N                  draw N contact samples of every pair first; the 6 nearest to a query are seeds too

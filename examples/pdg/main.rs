@@ -102,11 +102,15 @@ fn answer_all(
             let samples = ContactSamples::new(a, b, request.samples, request.seed, Some(&mut tell));
             (DepthSolver::new(a, b), samples)
         });
+        let mut before = None;
         for &kind in &request.kinds {
             let name = format!("{} {}", query.id, kind.name());
-            let poses = seeds::nearest(samples, solver.a(), kind, &query.pose);
+            let mut poses = seeds::nearest(samples, solver.a(), kind, &query.pose);
+            // No point moves more than DISP's pose says, so the object norm's depth is no more either.
+            poses.extend(before);
             let options = DepthOptions { poses: &poses, ..options };
             let row = bar.during(rows.len(), &name, |watch| answer::ask(solver, query, kind, &options, watch));
+            before = (row.upper.is_finite() && row.upper > 0.0).then_some(row.pose);
             if let Some(folder) = &request.picture {
                 picture::draw(solver, query, &row, &options, folder)?;
             }

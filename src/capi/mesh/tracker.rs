@@ -90,7 +90,7 @@ pub struct qdist_mesh_budget {
     pub max_queries: u64,
     /// The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     pub relative: f64,
-    /// Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 1.
+    /// Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
     pub probes: u32,
     /// 1 (default): lower bounds are renewed when a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
     pub certify: u32,
