@@ -231,7 +231,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     pub fn limit_contacts(&mut self) {
         let contacts = &mut self.scratch.contacts;
         if contacts.len() > CONTACTS {
-            contacts.sort_by(|x, y| x.gap.abs().total_cmp(&y.gap.abs()));
+            contacts.sort_unstable_by(|x, y| x.gap.abs().total_cmp(&y.gap.abs()));
             contacts.truncate(CONTACTS);
         }
     }
