@@ -8,7 +8,8 @@
 //! * The nearest remembered pose lies on the boundary, where the last walk ended. A walk of a few steps follows the query, with a trust region of
 //!   a few times the motion.
 //! * A *probe* is one test at a random pose that is a little nearer than the best. Where it is free, a better valley has been found; that is
-//!   how the tracker leaves a local minimum. Another remembered pose is refined beside the best.
+//!   how the tracker leaves a local minimum. Every fourth tick a small push-out from the query's pose looks for a way out that no
+//!   probe finds; in the others another remembered pose is refined beside the best.
 //! * A free pose from elsewhere, a cold query in the background, is [merged](DepthTracker::merge) in.
 //!
 //! Without a remembered pose (the first tick, a body that was never free) A escapes from B's box and is pushed out.
