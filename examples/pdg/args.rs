@@ -103,7 +103,7 @@ fn pose(text: &str) -> Result<Isometry3<f64>, String> {
     let Some(&[w, x, y, z, tx, ty, tz]) = numbers.as_deref() else {
         return Err(format!("--pose is {text:?}, not 7 numbers qw,qx,qy,qz,tx,ty,tz"));
     };
-    input::pose([w, x, y, z], [tx, ty, tz]).ok_or(format!("--pose {text:?} has no unit quaternion in front"))
+    input::pose([w, x, y, z], [tx, ty, tz]).map_err(|trouble| format!("--pose {text:?}: {trouble}"))
 }
 
 #[cfg(test)]

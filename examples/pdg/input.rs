@@ -99,7 +99,7 @@ fn query(v: &Value, id: &str, folder: &Path) -> Result<Query, Trouble> {
     let (q, t) = (&v["pose0"]["q_wxyz"], &v["pose0"]["t"]);
     let q = numbers(q).ok_or("`pose0.q_wxyz` is not a list of 4 numbers")?;
     let t = numbers(t).ok_or("`pose0.t` is not a list of 3 numbers")?;
-    let pose = pose(q, t).ok_or("`pose0.q_wxyz` is not a unit quaternion")?;
+    let pose = pose(q, t).map_err(|trouble| format!("`pose0`: {trouble}"))?;
     let disp = known(v, ["disp_ub", "disp_lb", "exact_disp"], None)?;
     let squares = Some(["sigma_ub", "sigma_lb", "exact_sigma"]);
     let sigma = known(v, ["sqrt_sigma_ub", "sqrt_sigma_lb", "exact_sqrt_sigma"], squares)?;
@@ -132,11 +132,17 @@ fn numbers<const N: usize>(v: &Value) -> Option<[f64; N]> {
     list?.try_into().ok()
 }
 
-/// A pose from a quaternion (w, x, y, z), of unit length to what a few digits can say, and a translation.
-pub fn pose(q: [f64; 4], t: [f64; 3]) -> Option<Isometry3<f64>> {
+/// A pose from a quaternion (w, x, y, z), of unit length to what a few digits can say, and a translation; or what is wrong.
+pub fn pose(q: [f64; 4], t: [f64; 3]) -> Result<Isometry3<f64>, &'static str> {
     let q = Quaternion::new(q[0], q[1], q[2], q[3]);
-    let near = (q.norm() - 1.0).abs() < 1e-3 && t.iter().all(|x| x.is_finite());
-    near.then(|| Isometry3::from_parts(Translation3::new(t[0], t[1], t[2]), UnitQuaternion::from_quaternion(q)))
+    let near = (q.norm() - 1.0).abs() < 1e-3;
+    if !near {
+        return Err("the quaternion (qw, qx, qy, qz) has not length 1");
+    }
+    if !t.iter().all(|x| x.is_finite()) {
+        return Err("the translation is not finite");
+    }
+    Ok(Isometry3::from_parts(Translation3::new(t[0], t[1], t[2]), UnitQuaternion::from_quaternion(q)))
 }
 
 #[cfg(test)]
@@ -166,7 +172,7 @@ mod tests {
     #[test]
     fn trouble_names_the_query_and_the_field() {
         assert!(trouble("[0, 1, 0, 0]", "[0, 1, 0]").contains("one: `pose0.q_wxyz`"));
-        assert!(trouble("[0, 1, 0, 0]", "[0, 2, 0, 0]").contains("unit quaternion"));
+        assert!(trouble("[0, 1, 0, 0]", "[0, 2, 0, 0]").contains("has not length 1"));
         assert!(trouble("3.5", "\"3.5\"").contains("one: `pose0.t`"));
         assert!(trouble("\"a.obj\"", "1").contains("one: `A`"));
         assert!(trouble("\"B\"", "\"C\"").contains("one: `B`"));
