@@ -16,7 +16,7 @@
 //!   who may take them from stored [`ContactSamples`].
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what contacts say of motions near by; `sampling` and `branching` are the walk's other kinds of step.
-//! * `search` keeps the best pose and the budget; `plan` says how much is done, and when more is of no use.
+//! * `search` keeps the best pose and the budget; `plan` says how much is done, and when more is of no use; `finish` makes the best pose the answer.
 //! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
@@ -37,6 +37,7 @@
 
 mod branching;
 mod contact_space;
+mod finish;
 mod plan;
 mod random;
 mod sampling;

@@ -5,7 +5,11 @@
 //! * The *room* between the bounds is small: whatever is still unknown gains little.
 //! * Walks *come back*: when several, from seeds far from each other, end at one and the same best pose, a better valley would have to be one
 //!   that all of them missed (the stopping rules of multistart search: Boender and Rinnooy Kan 1987). Of queries whose best pose was met three times
-//!   hardly one had a better answer; of those that met it once, many.
+//!   hardly one had a better answer; of those that met it once, many. DISP's bound is close as a rule, and where it is not, the bodies
+//!   lock into each other: more walks have to come back then.
+//!
+//! DISP's least motion is a translation more often than not, and its bound often proves that nothing is much better. So its first round begins with
+//! translations alone, and may end there.
 //!
 //! So quick queries stay quick, and time goes where the answer is in doubt.
 
@@ -17,6 +21,11 @@ use crate::mesh::metric::Certificate;
 /// What a query of an effort does, for a pair of models and a kind of metric.
 pub struct Plan {
     pub rays: rays::Plan,
+    /// Translations come first, and are all there is when one walk from them brings the ratio of the bounds down to this. `None`: all
+    /// rays at once.
+    pub translations_suffice: Option<f64>,
+    /// Translations near the best pose's that are tried in the end, at a time.
+    pub near: usize,
     /// Rounds of rays and walks at most.
     pub rounds: usize,
     /// When fewer are enough.
@@ -40,17 +49,22 @@ pub struct Patience {
     slope: f64,
     /// As long as fewer walks than this have ended at the best pose.
     returns: usize,
+    /// The same where the bounds' ratio is beyond [`WIDE`].
+    returns_if_wide: usize,
 }
+
+/// Where bounds are farther from each other than this, more walks have to come back.
+const WIDE: f64 = 1.06;
 
 impl Patience {
     /// Whether so many walks that have ended at the best pose are enough.
-    pub fn is_satisfied(&self, returns: usize) -> bool {
-        returns >= self.returns
+    pub fn is_satisfied(&self, lower: f64, upper: f64, returns: usize) -> bool {
+        returns >= if upper > WIDE * lower { self.returns_if_wide } else { self.returns }
     }
 
     /// Whether another round is wanted after so many, when so many walks have ended at the best pose.
     pub fn goes_on(&self, rounds: usize, lower: f64, upper: f64, returns: usize) -> bool {
-        !self.is_satisfied(returns) && upper - self.near * lower > lower * (rounds as f64 / self.slope)
+        !self.is_satisfied(lower, upper, returns) && upper - self.near * lower > lower * (rounds as f64 / self.slope)
     }
 }
 
@@ -73,11 +87,16 @@ impl Plan {
         // DISP's lower bound is close to it. The object norm's walks are smooth and end slowly.
         let disp = kind == Certificate::Disp;
         let patience = match kind {
-            Certificate::Disp => Patience { near: 1.03, slope: 40.0, returns: 4 },
-            Certificate::SqrtSigma | Certificate::None => Patience { near: 1.15, slope: 50.0, returns: 3 },
+            Certificate::Disp => Patience { near: 1.03, slope: 60.0, returns: 3, returns_if_wide: 11 },
+            Certificate::SqrtSigma | Certificate::None => {
+                Patience { near: 1.15, slope: 50.0, returns: 3, returns_if_wide: 3 }
+            }
         };
+        let near = if disp { 16 } else { 0 };
         match effort {
             Effort::Fast => Plan {
+                translations_suffice: disp.then_some(1.02),
+                near: 0,
                 rays: rays(20, 12, 1.1, 2),
                 rounds: 1,
                 patience,
@@ -87,7 +106,9 @@ impl Plan {
                 hope: 0.97,
             },
             Effort::Default => Plan {
-                rays: rays(32, 64, 1.3, 5),
+                translations_suffice: disp.then_some(1.02),
+                near,
+                rays: rays(32, 64, if disp { 1.2 } else { 1.3 }, 5),
                 rounds: 20,
                 patience,
                 work: 8_000,
@@ -96,9 +117,11 @@ impl Plan {
                 hope: if disp { 0.95 } else { 1.0 },
             },
             Effort::Heavy => Plan {
+                translations_suffice: None,
+                near: 4 * near,
                 rays: rays(64, 128, 1.4, 10),
                 rounds: 20,
-                patience: Patience { near: 1.001, slope: f64::INFINITY, returns: 30 },
+                patience: Patience { near: 1.001, slope: f64::INFINITY, returns: 30, returns_if_wide: 30 },
                 work: 200_000,
                 coarse: 1e-3,
                 gain: 1e-5,
@@ -112,7 +135,7 @@ impl Plan {
 mod tests {
     use super::Patience;
 
-    const PATIENCE: Patience = Patience { near: 1.1, slope: 10.0, returns: 3 };
+    const PATIENCE: Patience = Patience { near: 1.1, slope: 10.0, returns: 3, returns_if_wide: 5 };
 
     #[test]
     fn narrow_brackets_are_left_alone() {
@@ -129,8 +152,11 @@ mod tests {
 
     #[test]
     fn walks_that_come_back_end_the_search() {
-        assert!(PATIENCE.goes_on(1, 1.0, 9.0, 2));
-        assert!(!PATIENCE.goes_on(1, 1.0, 9.0, 3));
+        assert!(PATIENCE.goes_on(1, 1.0, 9.0, 4));
+        assert!(!PATIENCE.goes_on(1, 1.0, 9.0, 5));
+        let patience = Patience { near: 1.01, ..PATIENCE };
+        assert!(patience.goes_on(0, 1.0, 1.05, 2));
+        assert!(!patience.goes_on(0, 1.0, 1.05, 3));
     }
 
     #[test]

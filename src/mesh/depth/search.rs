@@ -1,10 +1,11 @@
 //! The state of one query: the best pose so far, the budget, and the order of things.
 
+use super::finish::finish;
 use super::plan::Plan;
 use super::random::Random;
 use super::seeds::pushout;
 use super::seeds::rays::{self, Seed};
-use super::walk::{Bounds, CONTACTS, ITERATIONS, TRUST, follow, walk};
+use super::walk::{Bounds, CONTACTS, walk};
 use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Walk, Watch};
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
@@ -100,7 +101,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             self.walk_from(pose, &plan);
         }
         if let Some(seed) = escape {
-            self.explore(&plan, 0, &seed);
+            self.begin(&plan, seed);
         }
         // Dear, and of use where rays have missed a narrow passage.
         if self.options.push_out
@@ -117,12 +118,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let best = Seed { pose: self.pose, value: self.upper };
             self.explore(&plan, round, &best);
         }
-        // Where corners meet corners, planes stop a walk short of its end; the last one takes unions instead.
-        if self.walk == Walk::Linearised {
-            self.walk = Walk::Branching;
-        }
-        self.refine(plan.gain);
-        self.polish();
+        finish(&mut self, &plan);
         self.answer(self.outcome())
     }
 
@@ -135,22 +131,38 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         self.upper > near * self.lower
     }
 
+    /// The first round. Where translations and the lower bound say nearly the same, no ray that turns is cast.
+    fn begin(&mut self, plan: &Plan, escape: Seed) {
+        let Some(near) = plan.translations_suffice.filter(|_| self.options.rays) else {
+            return self.explore(plan, 0, &escape);
+        };
+        let translations = rays::Plan { screws: 0, seeds: 1, ..plan.rays };
+        for seed in rays::cast(self, &translations, 0, &escape) {
+            self.walk(&seed.pose, plan.coarse, f64::INFINITY);
+        }
+        if self.upper > near * self.lower {
+            let best = Seed { pose: self.pose, value: self.upper };
+            self.explore(plan, 0, &best);
+        }
+    }
+
     /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
     fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
         let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
-        // The best pose is refined in the end.
-        let seeds = seeds.iter().filter(|seed| round == 0 || seed.pose != known.pose);
+        // Where a walk has ended, none begins.
+        let walked = self.scratch.ends.contains(&known.pose);
+        let seeds = seeds.iter().filter(|seed| !walked || seed.pose != known.pose);
         for (k, seed) in seeds.enumerate() {
             self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
             self.walk(&seed.pose, plan.coarse, self.upper * plan.hope);
-            if plan.patience.is_satisfied(self.returns()) {
+            if plan.patience.is_satisfied(self.lower, self.upper, self.returns()) {
                 break;
             }
         }
     }
 
     /// Walks from a free pose, and notes where that ends.
-    fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
+    pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
         if self.goes_on() {
             let end = walk(self, from, &Bounds { gain, hopeless });
             self.scratch.ends.push(end);
@@ -163,14 +175,6 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         self.scratch.ends.iter().filter(at_best).count()
     }
 
-    /// Walks on from the best pose.
-    fn refine(&mut self, gain: f64) {
-        if self.upper.is_finite() && self.goes_on() {
-            let pose = self.pose;
-            follow(self, &pose, TRUST * self.size, ITERATIONS, &Bounds { gain, hopeless: f64::INFINITY });
-        }
-    }
-
     /// Whether the query's pose and options are proper numbers.
     pub fn is_valid(&self) -> bool {
         let here = self.metric.distance(&self.start, &self.start);
@@ -180,6 +184,8 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     /// How the search ended.
     pub fn outcome(&self) -> Outcome {
         match self.stop {
+            // The last queries, or a certificate after them, may have closed the bracket.
+            Some(Outcome::Budget) if self.is_closed() => Outcome::Converged,
             Some(outcome) => outcome,
             None if self.upper == f64::INFINITY => Outcome::Stuck,
             None if self.is_closed() => Outcome::Converged,
@@ -187,7 +193,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    fn is_closed(&self) -> bool {
+    pub fn is_closed(&self) -> bool {
         self.upper.is_finite() && self.upper - self.lower <= self.options.relative * self.upper
     }
 
@@ -282,17 +288,6 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             let pose = Translation3::from(further) * self.start;
             if !self.pair.collides(&pose) {
                 return self.take(&pose);
-            }
-        }
-    }
-
-    /// Brings the best pose to where it touches; nearer where that is all that is left between the bounds.
-    fn polish(&mut self) {
-        for tolerance in [1e-6, 1e-10] {
-            if self.upper.is_finite() && (tolerance == 1e-6 || self.is_closed()) {
-                let pose = self.pose;
-                let slid = self.slide(&pose, tolerance * self.size);
-                self.take(&slid);
             }
         }
     }

@@ -71,6 +71,13 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
     follow(search, &pose, TRUST * search.size, ITERATIONS, bounds).0
 }
 
+/// Walks from a free pose without turning, and offers where it ends.
+pub fn translate(search: &mut Search, from: &Isometry3<f64>, gain: f64) {
+    let pose = search.slide(from, 0.2 * MARGIN * search.size);
+    let bounds = Bounds { gain, hopeless: f64::INFINITY };
+    advance(search, &pose, TRUST * search.size, ITERATIONS, Freedom::Translation, &bounds);
+}
+
 /// Walks from a free pose near the boundary, with a first trust region and so many steps, and offers where it ends. Returns that pose, and
 /// the trust region there.
 pub fn follow(
@@ -142,9 +149,9 @@ fn step(
     freedom: Freedom,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
     let found = match search.walk {
-        Walk::Linearised => linear_step(search, pose, trust, margin, clearance, freedom)?,
-        Walk::Branching => branched_step(search, pose, trust, margin, clearance)?,
-        Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
+        Walk::Branching if freedom == Freedom::Motion => branched_step(search, pose, trust, margin, clearance)?,
+        Walk::Sampling if freedom == Freedom::Motion => sampled_step(search, pose, trust, margin, clearance)?,
+        _ => linear_step(search, pose, trust, margin, clearance, freedom)?,
     };
     let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
     let mut fraction = 1.0;

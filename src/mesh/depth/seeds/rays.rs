@@ -2,10 +2,13 @@
 //!
 //! A ray is a translation or a screw about the metric's centre. It is tried where its value is a little more than the best ray's: is it not free
 //! there, it is given up after that one test. Otherwise bisection finds where it becomes free; the pose is a seed.
+//!
+//! Where facets meet at flat angles one valley has neighbours a few degrees away that are better by a few parts in a thousand. Translations around the best
+//! pose's find the way over ([`beside`]).
 
 use super::super::search::Search;
 use crate::mesh::optimize::Twist;
-use nalgebra::{Isometry3, Translation3, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// How many rays, and which of them become seeds.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +27,12 @@ pub struct Plan {
 const DIVERSE: f64 = 0.2;
 /// A ray's free pose is found to this fraction of its value.
 const ACCURACY: f64 = 0.05;
+/// How far around the best pose's direction neighbours are looked for, in radians.
+const BESIDE: f64 = 0.14;
+/// They are tried at this fraction of the best value.
+const BETTER: f64 = 0.9998;
+/// A translation replaces the best pose up to this multiple of its value: a walk will gain that.
+const HARDLY_WORSE: f64 = 1.02;
 
 /// A free pose and its value.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +82,7 @@ pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec
     let turn = search.random.rotation();
     let translations = if round == 0 { plan.translations } else { plan.translations / 2 };
     for k in 0..translations {
-        shoot(search, turn * on_sphere(k, translations), Vector3::zeros());
+        shoot(search, turn * on_cap(k, translations, -1.0), Vector3::zeros());
     }
     for _ in 0..plan.screws {
         let (linear, angular) = (search.random.direction(), search.random.direction());
@@ -89,6 +98,35 @@ pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec
         }
     }
     chosen
+}
+
+/// The last of so many translations around the best pose's, each of them better than those before; `None` if none is.
+pub fn beside(search: &mut Search, translations: usize) -> Option<Isometry3<f64>> {
+    let towards = best_translation(search)?;
+    let turn = UnitQuaternion::rotation_between(&Vector3::z(), &towards)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+    let mut found = None;
+    for k in 0..translations {
+        let direction = turn * on_cap(k, translations, BESIDE.cos());
+        if search.goes_on()
+            && let Some(seed) = ray(search, direction, Vector3::zeros(), BETTER * search.upper)
+        {
+            found = Some(seed.pose);
+        }
+    }
+    found
+}
+
+/// The translation into the direction of the best pose's, when it is hardly worse.
+pub fn without_turning(search: &mut Search) -> Option<Isometry3<f64>> {
+    let towards = best_translation(search)?;
+    ray(search, towards, Vector3::zeros(), HARDLY_WORSE * search.upper).map(|seed| seed.pose)
+}
+
+/// The direction in which the best pose moves A's centre.
+fn best_translation(search: &Search) -> Option<Vector3<f64>> {
+    let centre = search.metric.frame().centre;
+    (search.pose * centre - search.start * centre).try_normalize(0.0)
 }
 
 /// Where the motion s (linear, angular / radius) becomes free, if it is at the value `most`.
@@ -122,10 +160,10 @@ fn ray(search: &mut Search, linear: Vector3<f64>, angular: Vector3<f64>, most: f
     Some(Seed { pose, value: search.distance(&pose) })
 }
 
-/// The k-th of n evenly spread directions: Fibonacci's spiral.
-fn on_sphere(k: usize, n: usize) -> Vector3<f64> {
+/// The k-th of n directions, evenly spread where the cosine to z is at least this (-1: everywhere). Fibonacci's spiral.
+fn on_cap(k: usize, n: usize, least: f64) -> Vector3<f64> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    let z = 1.0 - (2.0 * k as f64 + 1.0) / n as f64;
+    let z = 1.0 - (1.0 - least) * (k as f64 + 0.5) / n as f64;
     let (sin, cos) = (golden * k as f64).sin_cos();
     Vector3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vector3::z() * z
 }

@@ -1,0 +1,82 @@
+//! The end of a query: from the best pose that the search has met to the answer.
+//!
+//! Walks of the search end early. What they leave is taken here:
+//!
+//! * Where corners meet corners, planes stop a walk short of its end; the last one takes unions instead (`branching`).
+//! * Translations near by may be over the edge of a neighbouring valley (`rays::beside`).
+//! * The least motion often does not turn at all. A walk that turns comes near it and creeps; the program in three variables ends there.
+//! * The pose is brought to where it touches.
+
+use super::Walk;
+use super::plan::Plan;
+use super::search::Search;
+use super::seeds::rays;
+use super::walk::{Bounds, ITERATIONS, follow, translate};
+
+/// The first trust region of the last walk, in diagonals of A. The pose is nearly there.
+const TRUST: f64 = 0.01;
+/// How often a neighbour's neighbours are tried.
+const HOPS: usize = 3;
+/// No translation is looked for where it would gain less than this fraction.
+const WORTHWHILE: f64 = 5e-4;
+/// The least gain of an iteration of the last translation.
+const TRANSLATION_GAIN: f64 = 1e-5;
+
+/// Improves the best pose as far as that goes.
+pub fn finish(search: &mut Search, plan: &Plan) {
+    refine(search, plan.gain);
+    if search.walk == Walk::Linearised && plan.near > 0 {
+        if hop(search, plan) {
+            refine(search, plan.gain);
+        }
+        if is_worthwhile(search)
+            && let Some(pose) = rays::without_turning(search)
+        {
+            translate(search, &pose, TRANSLATION_GAIN);
+        }
+    }
+    polish(search);
+}
+
+/// Whether the lower bound leaves room for a gain.
+fn is_worthwhile(search: &mut Search) -> bool {
+    search.upper.is_finite() && search.upper * (1.0 - WORTHWHILE) > search.lower && search.goes_on()
+}
+
+/// Walks on from the best pose.
+fn refine(search: &mut Search, gain: f64) {
+    if !search.upper.is_finite() || !search.goes_on() {
+        return;
+    }
+    let kind = search.walk;
+    if kind == Walk::Linearised {
+        search.walk = Walk::Branching;
+    }
+    let pose = search.pose;
+    follow(search, &pose, TRUST * search.size, ITERATIONS, &Bounds { gain, hopeless: f64::INFINITY });
+    search.walk = kind;
+}
+
+/// Goes over to better valleys beside the best pose. Whether there was one.
+fn hop(search: &mut Search, plan: &Plan) -> bool {
+    let before = search.upper;
+    for _ in 0..HOPS {
+        if !is_worthwhile(search) {
+            break;
+        }
+        let Some(pose) = rays::beside(search, plan.near) else { break };
+        search.walk(&pose, plan.coarse, f64::INFINITY);
+    }
+    search.upper < before
+}
+
+/// Brings the best pose to where it touches; nearer where that is all that is left between the bounds.
+fn polish(search: &mut Search) {
+    for tolerance in [1e-6, 1e-10] {
+        if search.upper.is_finite() && (tolerance == 1e-6 || search.is_closed()) {
+            let pose = search.pose;
+            let slid = search.slide(&pose, tolerance * search.size);
+            search.take(&slid);
+        }
+    }
+}
