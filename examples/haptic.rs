@@ -80,8 +80,8 @@ fn read(file: &str) -> Result<Triangles, String> {
     Ok(all)
 }
 
-fn body((vertices, triangles): Triangles) -> Result<Model, String> {
-    let model = Model::new(&vertices, &triangles).map_err(|error| error.to_string())?;
+fn body(name: &str, (vertices, triangles): Triangles) -> Result<Model, String> {
+    let model = Model::new(&vertices, &triangles).map_err(|error| format!("{name}: {error}"))?;
     // A soup has no certificate: its lower bounds are 0.
     Ok(model.clone().with_pieces(&Default::default()).unwrap_or(model))
 }
@@ -147,11 +147,11 @@ fn parse() -> Result<Request, String> {
             "--metric" => match words.next().as_deref() {
                 Some("disp") => request.sigma = false,
                 Some("sigma") => request.sigma = true,
-                _ => return Err("--metric disp|sigma".into()),
+                _ => return Err("--metric is disp or sigma".into()),
             },
             "--ticks" => {
                 let count = words.next().and_then(|word| word.parse().ok()).filter(|&n| n > 0);
-                request.ticks = count.ok_or("--ticks N, at least 1")?;
+                request.ticks = count.ok_or("--ticks is a whole number from 1 up")?;
             }
             "--realtime" => request.real_time = true,
             file if !file.starts_with('-') => request.files.push(file.into()),
@@ -165,11 +165,10 @@ fn parse() -> Result<Request, String> {
 }
 
 fn run(request: &Request) -> Result<(), String> {
-    let [a, b] = match request.files.as_slice() {
-        [a, b] => [read(a)?, read(b)?],
-        _ => [tool(), part()],
+    let (a, b) = match request.files.as_slice() {
+        [a, b] => (body(a, read(a)?)?, body(b, read(b)?)?),
+        _ => (body("tool", tool())?, body("part", part())?),
     };
-    let (a, b) = (body(a)?, body(b)?);
     for (name, model) in [("tool", &a), ("part", &b)] {
         if !model.mesh().report().solid {
             println!("the {name} is no solid: its surface only is asked, there are no lower bounds");
@@ -241,7 +240,7 @@ fn report(mut times: Vec<f64>) {
         println!("{:>5.2} to {:>5.2} ms {count:>7} {bar}", edge[0], edge[1]);
     }
     println!(
-        "{} ticks: median {:.3} ms, p99 {:.3} ms, max {:.3} ms, missed (above 1 ms) {}",
+        "{} ticks: median {:.3} ms, p99 {:.3} ms, max {:.3} ms, missed (above 1 ms, also when the machine took the processor away) {}",
         times.len(),
         quantile(&times, 0.5),
         quantile(&times, 0.99),
@@ -250,11 +249,17 @@ fn report(mut times: Vec<f64>) {
     );
 }
 
+const USAGE: &str = "usage: haptic [TOOL.obj PART.obj] [--metric disp|sigma] [--ticks N] [--realtime]";
+
 fn main() -> std::process::ExitCode {
+    if std::env::args().any(|word| word == "--help" || word == "-h") {
+        println!("{USAGE}");
+        return std::process::ExitCode::SUCCESS;
+    }
     match parse().and_then(|request| run(&request)) {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(trouble) => {
-            eprintln!("{trouble}");
+            eprintln!("haptic: {trouble}");
             std::process::ExitCode::FAILURE
         }
     }

@@ -4,18 +4,20 @@
  *     double xyz[] = { 0, 0, 0,   1, 0, 0,   0, 1, 0,   0, 0, 1 };
  *     uint32_t triangles[] = { 0, 2, 1,   0, 1, 3,   0, 3, 2,   1, 2, 3 };
  *     qdist_mesh_pose pose = { { 1, 0, 0, 0 }, { 0, 0, 0.9 } };
- *     qdist_mesh *body;
+ *     qdist_mesh *mesh, *body;
  *     qdist_mesh_pair *pair;
  *     qdist_mesh_depth depth;
  *     uint32_t which;
  *
- *     qdist_mesh_create(xyz, 4, triangles, 4, &which, &body);
+ *     qdist_mesh_create(xyz, 4, triangles, 4, &which, &mesh);
+ *     qdist_mesh_certify(mesh, &body);      a second mesh, with what lower bounds come from; of meshes without, `lower` is 0
  *     qdist_mesh_pair_create(body, body, &pair);
  *     depth.struct_size = sizeof depth;
  *     if (qdist_mesh_pair_depth(pair, &pose, NULL, &depth) == QDIST_OK)
  *         ... depth.lower <= how far the farthest point must move <= depth.upper; at depth.pose the bodies are apart ...
  *     qdist_mesh_pair_free(pair);
  *     qdist_mesh_free(body);
+ *     qdist_mesh_free(mesh);
  *
  * Library     These functions are in the hosted library (`make lib-mesh`), with all of qdist.h; link it with the system's threads and mathematics
  *             (-lpthread -ldl -lm). The freestanding library does not contain them. Everything is in double.
@@ -337,8 +339,8 @@ typedef struct {
     uint32_t pose_count;
     // Number of the random sequence; default 0. The same query with the same seed gives the same answer, to the last digit.
     uint64_t seed;
-    // The query ends after this many collision, contact and distance queries, but for a few; default UINT64_MAX. Queries take some microseconds
-    // each.
+    // The query ends after this many collision, contact and distance queries, but for some tens to bring the best pose to contact; default
+    // UINT64_MAX. Queries take some microseconds each.
     uint64_t max_queries;
     // The query ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     double relative;

@@ -168,6 +168,23 @@ fn a_merged_answer_is_taken_if_it_is_free_and_better() {
     assert!(update(&mut tracker, &pose, a.disp(), &tight).upper > 0.5);
 }
 
+/// The certificate used to come last, after the outcome was settled: a closed bracket was called `Budget`, and all queries were spent.
+#[test]
+fn a_closed_bracket_converges_within_any_budget() {
+    let shape = cuboid([0.5; 3]);
+    let body = certified(&shape);
+    let pose = Isometry3::translation(0.05, 0.1, 0.9);
+    let cold = DepthSolver::new(&body, &body).depth(&pose, body.disp(), &DepthOptions::default(), None);
+    assert_eq!(cold.outcome, Outcome::Converged);
+    for max_queries in [1, 16] {
+        let mut tracker = DepthTracker::new(&body, &body);
+        tracker.merge(&cold);
+        let warm = update(&mut tracker, &pose, body.disp(), &Budget { max_queries, ..Budget::default() });
+        assert_eq!(warm.outcome, Outcome::Converged, "{warm:?}");
+        assert_eq!(total(&warm), 1);
+    }
+}
+
 #[test]
 fn jumps_and_returns_keep_the_bracket_true() {
     let (a, b) = (certified(&l_shape()), certified(&torus_knot(48, 8, 0.25)));

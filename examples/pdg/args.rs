@@ -8,8 +8,9 @@ use qdist::nalgebra::Isometry3;
 use crate::input::{self, Kind};
 
 pub const USAGE: &str = "\
-usage: pdg --queries FILE.json [options]                          the queries of a file
-       pdg A B --pose qw,qx,qy,qz,tx,ty,tz [--pose ...] [options]  two mesh files (OBJ, STL, PLY, OFF); without a pose, what is wrong with them
+usage: pdg --queries FILE.json [options]                          the queries of a file (format: head of examples/pdg/input.rs)
+       pdg A B --pose qw,qx,qy,qz,tx,ty,tz [--pose ...] [options]  two mesh files (OBJ, STL, PLY, OFF); without a pose, what is wrong with them;
+                                                                  q of length 1 to 1e-3, x_B = R x_A + t
        pdg --table1 [--queries FILE.json] [options]               the paper's Table I beside ours
 options:
   --metric disp|sigma          the largest displacement, or the root mean square one (the root of the object norm); else both,
@@ -17,6 +18,7 @@ options:
   --effort fast|default|heavy  how long to search
   --seed N                     number of the random sequence, 0 otherwise
   --samples N                  draw N contact samples of every pair first; the 6 nearest to a query are seeds too
+  --help                       this text
   --csv                        nothing but CSV on the standard output
   --picture DIR                DIR/QUERY_METRIC.svg: before, on the way, after";
 
@@ -68,6 +70,9 @@ impl Request {
                 _ if argument.starts_with("--") => return Err(format!("{argument} is no option")),
                 _ => meshes.push(PathBuf::from(argument)),
             }
+        }
+        if !poses.is_empty() && (table1 || queries.is_some()) {
+            return Err("--pose goes with two mesh files, not with --queries or --table1".into());
         }
         let meshes: Option<[PathBuf; 2]> = match meshes.len() {
             0 if poses.is_empty() => None,
@@ -150,6 +155,7 @@ mod tests {
             "--queries q --samples many",
             "--queries q --what",
             "--table1 a b",
+            "--queries q --pose 1,0,0,0,0,0,0",
         ] {
             assert!(parse(line).is_err(), "{line}");
         }

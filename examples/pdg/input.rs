@@ -96,6 +96,11 @@ pub fn parse(text: &str, folder: &Path) -> Result<Vec<Query>, Trouble> {
 
 fn query(v: &Value, id: &str, folder: &Path) -> Result<Query, Trouble> {
     let path = |key: &str| v[key].as_str().map(|s| folder.join(s)).ok_or(format!("`{key}` is not the name of a file"));
+    for key in ["A", "B", "pose0"] {
+        if v[key].is_null() {
+            return Err(format!("`{key}` is missing"));
+        }
+    }
     let (q, t) = (&v["pose0"]["q_wxyz"], &v["pose0"]["t"]);
     let q = numbers(q).ok_or("`pose0.q_wxyz` is not a list of 4 numbers")?;
     let t = numbers(t).ok_or("`pose0.t` is not a list of 3 numbers")?;

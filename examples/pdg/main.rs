@@ -48,6 +48,9 @@ fn queries(source: &Source) -> Result<Vec<Query>, String> {
 
 fn run(request: &Request) -> Result<(), String> {
     let queries = queries(&request.source)?;
+    if let Some(folder) = &request.picture {
+        std::fs::create_dir_all(folder).map_err(|e| format!("--picture: {}: {e}", folder.display()))?;
+    }
     let bar = Bar::new(queries.len() * request.kinds.len());
     let bodies = match &request.source {
         Source::File(file) | Source::Table1(file) => Bodies::of(&queries, |file| bar.say(&file.display().to_string()))
@@ -58,7 +61,11 @@ fn run(request: &Request) -> Result<(), String> {
             bodies
         }
     };
-    for (file, model) in bodies.iter() {
+    let named = match &request.source {
+        Source::Pair(files, _) if files[0] != files[1] => files.iter().map(|f| (f.as_path(), bodies.get(f))).collect(),
+        _ => bodies.iter().collect::<Vec<_>>(),
+    };
+    for (file, model) in named {
         let report = words::report(file, model);
         if request.csv || !matches!(request.source, Source::Pair(..)) {
             // Only what is wrong, and not between the answers.
@@ -69,7 +76,11 @@ fn run(request: &Request) -> Result<(), String> {
             print!("{report}");
         }
     }
-    answer_all(request, &queries, &bodies, &bar).map_err(|e| e.to_string())
+    match answer_all(request, &queries, &bodies, &bar) {
+        // Who reads has seen enough.
+        Err(e) if e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe) => Ok(()),
+        answered => answered.map_err(|e| e.to_string()),
+    }
 }
 
 fn answer_all(
@@ -85,9 +96,6 @@ fn answer_all(
         writeln!(out, "{}", answer::HEADER)?;
     } else if readable {
         table::head(&mut out)?;
-    }
-    if let Some(folder) = &request.picture {
-        std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }
     let options = DepthOptions { effort: request.effort, seed: request.seed, ..DepthOptions::default() };
     let mut solvers: HashMap<_, (DepthSolver, ContactSamples)> = HashMap::new();
@@ -118,6 +126,9 @@ fn answer_all(
                 row.write(&mut out)?;
             } else if readable {
                 table::line(&mut out, &row)?;
+                if matches!(request.source, Source::Pair(..)) {
+                    table::pose(&mut out, &row)?;
+                }
             }
             rows.push(row);
         }
@@ -127,7 +138,7 @@ fn answer_all(
     bar.finish();
     if table1 && !request.csv {
         table1::write(&mut out, queries, bodies, &rows)?;
-    } else if readable && queries.len() > 1 {
+    } else if readable && queries.len() > 1 && !matches!(request.source, Source::Pair(..)) {
         table::summary(&mut out, &rows)?;
     }
     out.flush()?;
@@ -135,6 +146,10 @@ fn answer_all(
 }
 
 fn main() -> ExitCode {
+    if std::env::args().any(|argument| argument == "--help" || argument == "-h") {
+        println!("{}", args::USAGE);
+        return ExitCode::SUCCESS;
+    }
     let request = match Request::parse(std::env::args().skip(1)) {
         Ok(request) => request,
         Err(trouble) => {

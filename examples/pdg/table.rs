@@ -23,6 +23,15 @@ pub fn line(out: &mut impl Write, row: &Row) -> io::Result<()> {
     writeln!(out, "{id:18} {kind:6} {outcome:11} {lower:>13} {upper:>13} {known:>13} {ratio:>9} {ms:>10.3}  {check}")
 }
 
+/// The pose that proves `upper`, as `--pose` takes it.
+pub fn pose(out: &mut impl Write, row: &Row) -> io::Result<()> {
+    let (q, t) = (row.pose.rotation, row.pose.translation);
+    if row.upper.is_finite() {
+        writeln!(out, "{:18} {:6} free at {},{},{},{},{},{},{}", "", "", q.w, q.i, q.j, q.k, t.x, t.y, t.z)?;
+    }
+    Ok(())
+}
+
 /// Some digits, whatever the size.
 fn number(x: f64) -> String {
     if x == 0.0 || (1e-4..1e6).contains(&x) { format!("{x:.8}") } else { format!("{x:.6e}") }
@@ -37,9 +46,11 @@ fn check(row: &Row) -> String {
         return format!("separated by {}", number(distance));
     }
     let width = match row.upper > 0.0 && row.upper.is_finite() {
-        true => format!("true, {:.2} % wide", 100.0 * (1.0 - row.lower / row.upper)),
-        false => "true".to_string(),
+        true => format!("{:.2} % wide", 100.0 * (1.0 - row.lower / row.upper)),
+        false => "no upper bound".to_string(),
     };
+    let compared = row.known.least().or(row.known.lower).is_some();
+    let width = if compared { format!("true, {width}") } else { width };
     if row.translation.is_some_and(|t| row.upper > t * (1.0 + 1e-3)) {
         return width + ", A TRANSLATION IS BETTER";
     }

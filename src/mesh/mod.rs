@@ -20,6 +20,28 @@
 //! # Ok::<(), qdist::mesh::MeshError>(())
 //! ```
 //!
+//! Depth is asked of [`Model`]s, meshes with what queries derive from them once; [`Model::with_pieces`] adds what lower bounds come from, which are 0
+//! without:
+//!
+//! ```
+//! use qdist::mesh::{Budget, DepthOptions, DepthSolver, DepthTracker, Model, Outcome};
+//! use qdist::nalgebra::Isometry3;
+//!
+//! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let body = Model::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?.with_pieces(&Default::default())?;
+//!
+//! let pose = Isometry3::translation(0.0, 0.0, 0.9);
+//! let cold = DepthSolver::new(&body, &body).depth(&pose, body.disp(), &DepthOptions::default(), None);
+//! assert_eq!(cold.outcome, Outcome::Converged);
+//! assert!(cold.lower > 0.0577 && cold.upper < 0.0578); // a third of 0.1 along the slanted face, times the root of 3
+//!
+//! let mut tracker = DepthTracker::new(&body, &body); // for a control loop
+//! tracker.merge(&cold);
+//! let warm = tracker.update(&pose, body.disp(), &Budget::default(), None);
+//! assert!(warm.lower <= warm.upper && warm.upper < 0.0578);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Parts
 //!
 //! ```text

@@ -116,8 +116,8 @@ pub struct qdist_mesh_options {
     pub pose_count: u32,
     /// Number of the random sequence; default 0. The same query with the same seed gives the same answer, to the last digit.
     pub seed: u64,
-    /// The query ends after this many collision, contact and distance queries, but for a few; default UINT64_MAX. Queries take some microseconds
-    /// each.
+    /// The query ends after this many collision, contact and distance queries, but for some tens to bring the best pose to contact; default
+    /// UINT64_MAX. Queries take some microseconds each.
     pub max_queries: u64,
     /// The query ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     pub relative: f64,

@@ -24,6 +24,26 @@ pub enum SolidError {
     Inverted(u32),
 }
 
+impl std::fmt::Display for SolidError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            SolidError::Empty => write!(f, "triangles: there is none"),
+            SolidError::Vertex(index) => write!(f, "vertices: number {index} is NaN, infinite or above 1e50"),
+            SolidError::Index(index) => write!(f, "triangles: number {index} names a vertex that does not exist"),
+            SolidError::Open(from, to) => {
+                write!(
+                    f,
+                    "triangles: the edge from vertex {from} to {to} is open, or a neighbour is wound the other way"
+                )
+            }
+            SolidError::Volume => write!(f, "triangles: the volume is not positive (wound inside out, or flat)"),
+            SolidError::Inverted(component) => write!(f, "triangles: component {component} is wound inside out"),
+        }
+    }
+}
+
+impl std::error::Error for SolidError {}
+
 /// Coordinates above this are refused: sixth powers must stay finite.
 const LARGEST: f64 = 1e50;
 

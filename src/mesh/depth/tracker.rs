@@ -15,7 +15,7 @@
 //! Without a remembered pose (the first tick, a body that was never free) A escapes from B's box and is pushed out.
 //!
 //! The depth changes by no more than the query's pose moves, |PD(q0) - PD(q1)| <= metric(q0, q1), by the triangle inequality. So a *lower bound*
-//! stays one when the motion is subtracted, and a new one is asked of the certificate when a tenth of the depth has been lost.
+//! stays one when the motion is subtracted, and a new one is asked of the certificate when there is none or a tenth of the depth has been lost.
 //!
 //! Nothing waits for anything: a tick is at most the budget's queries, and no query begins when the caller's clock says that it is late.
 //! A query that has begun is finished; the longest is a contact query, or a certificate.
@@ -64,14 +64,14 @@ const ROUNDING: f64 = 1e-12;
 /// What a tick may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Collision, contact and distance queries, at least 1: the pose itself is always tested. Where no free pose is known, the escape from
-    /// B's box comes on top, six tests at most; in the first tick and after a jump, the queries of a push-out step that has begun may.
+    /// Collision, contact and distance queries, at least 1, default 16: the pose itself is always tested. On top come, where no free pose is known, the
+    /// escape from B's box, and in the first tick and after a jump the queries of a push-out step that has begun: 14 in all at most.
     pub max_queries: u64,
-    /// The tick ends when `upper - lower` is at most this fraction of `upper`.
+    /// The tick ends when `upper - lower` is at most this fraction of `upper`, default 1e-3.
     pub relative: f64,
-    /// Tests at random poses that are nearer than the best.
+    /// Tests at random poses that are nearer than the best, default 4.
     pub probes: u32,
-    /// Whether lower bounds are renewed, and with what effort (0.1 to 1 ms). Without, they are 0.
+    /// Whether lower bounds are renewed, and with what effort (0.1 to 1 ms), default fast. Without, they are 0.
     pub certificate: Option<Effort>,
 }
 
@@ -104,14 +104,14 @@ struct Certified {
 /// use qdist::nalgebra::Isometry3;
 ///
 /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// let body = Model::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let body = Model::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?.with_pieces(&Default::default())?;
 /// let mut tracker = DepthTracker::new(&body, &body);
 /// for tick in 0..200 {
 ///     let pose = Isometry3::translation(0.0, 0.0, 1.1 - 1e-3 * f64::from(tick));
 ///     let depth = tracker.update(&pose, body.disp(), &Budget::default(), None);
 ///     assert!(depth.lower <= depth.upper && depth.upper < 0.11);
 /// }
-/// # Ok::<(), qdist::mesh::ModelError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct DepthTracker<'m> {
     solver: DepthSolver<'m>,
@@ -232,6 +232,12 @@ impl<'m> DepthTracker<'m> {
         if known.is_empty() && rays::escape(&mut search).is_some() {
             known.push(Known { pose: search.pose, trust: None });
         }
+        // Without any bound nothing tells that the best pose is good enough.
+        if let (Some(slot), Some(_), None) = (slot, budget.certificate, bound)
+            && !late.is_some_and(|late| late())
+        {
+            certified[slot] = certify(&mut search);
+        }
         if motion > JUMP * search.size
             && search.goes_on()
             && let Some(pushed) = pushout::push_out(&mut search, WORK)
@@ -263,12 +269,11 @@ impl<'m> DepthTracker<'m> {
             refine(&mut search, known, beside, motion, STEPS_BESIDE);
         }
 
-        if let (Some(slot), Some(_)) = (slot, budget.certificate) {
-            let lost = bound.map_or(f64::INFINITY, |bound| bound.lower - search.lower.min(bound.lower));
-            let moved = bound.map_or(f64::INFINITY, |bound| metric.distance(&bound.at, pose));
+        if let (Some(slot), Some(_), Some(bound)) = (slot, budget.certificate, bound) {
+            let lost = bound.lower - search.lower.min(bound.lower);
+            let moved = metric.distance(&bound.at, pose);
             if lost.max(moved) > LOST * search.upper && !late.is_some_and(|late| late()) {
-                search.lower = search.lower.max(search.certify()).min(search.upper);
-                certified[slot] = Some(Certified { kind: metric.certificate(), at: *pose, lower: search.lower });
+                certified[slot] = certify(&mut search);
             }
         }
         *last = Some((*pose, search.pose));
@@ -277,6 +282,12 @@ impl<'m> DepthTracker<'m> {
         }
         search.answer(search.outcome())
     }
+}
+
+/// A new lower bound.
+fn certify(search: &mut Search) -> Option<Certified> {
+    search.lower = search.lower.max(search.certify()).min(search.upper);
+    Some(Certified { kind: search.metric.certificate(), at: search.start, lower: search.lower })
 }
 
 /// A lower bound at another pose. DISP and the object norm are A's own, whatever metric they certify.

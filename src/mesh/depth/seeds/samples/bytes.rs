@@ -86,7 +86,8 @@ impl std::fmt::Display for SamplesError {
 impl std::error::Error for SamplesError {}
 
 impl ContactSamples {
-    /// The samples as bytes, alike on every machine (head of the module's source): 56 for each, and 48.
+    /// The samples as bytes, alike on every machine and in every release that reads their version: 56 for each, and 48. To be read by
+    /// [`from_bytes`](ContactSamples::from_bytes) alone.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEAD + POSE * self.poses.len() + TAIL);
