@@ -25,7 +25,7 @@ const TRANSLATION_GAIN: f64 = 1e-5;
 /// Improves the best pose as far as that goes.
 pub fn finish(search: &mut Search, plan: &Plan) {
     refine(search, plan.gain);
-    if search.walk == Walk::Linearised && plan.near > 0 {
+    if search.walk == Walk::Linearised {
         if hop(search, plan) {
             refine(search, plan.gain);
         }
