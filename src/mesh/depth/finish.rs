@@ -64,7 +64,7 @@ fn hop(search: &mut Search, plan: &Plan) -> bool {
         if !is_worthwhile(search) {
             break;
         }
-        let Some(pose) = rays::beside(search, plan.near) else { break };
+        let Some(pose) = rays::beside(search, plan.beside) else { break };
         search.walk(&pose, plan.coarse, f64::INFINITY);
     }
     search.upper < before

@@ -25,7 +25,7 @@ pub struct Plan {
     /// rays at once.
     pub translations_suffice: Option<f64>,
     /// Translations near the best pose's that are tried in the end, at a time.
-    pub near: usize,
+    pub beside: usize,
     /// Rounds of rays and walks at most.
     pub rounds: usize,
     /// When fewer are enough.
@@ -49,7 +49,7 @@ pub struct Patience {
     slope: f64,
     /// As long as fewer walks than this have ended at the best pose.
     returns: usize,
-    /// The same where the bounds' ratio is beyond [`WIDE`].
+    /// The same where there is a lower bound and the bounds' ratio is beyond [`WIDE`].
     returns_if_wide: usize,
 }
 
@@ -59,7 +59,7 @@ const WIDE: f64 = 1.06;
 impl Patience {
     /// Whether so many walks that have ended at the best pose are enough.
     pub fn is_satisfied(&self, lower: f64, upper: f64, returns: usize) -> bool {
-        returns >= if upper > WIDE * lower { self.returns_if_wide } else { self.returns }
+        returns >= if lower > 0.0 && upper > WIDE * lower { self.returns_if_wide } else { self.returns }
     }
 
     /// Whether another round is wanted after so many, when so many walks have ended at the best pose.
@@ -92,12 +92,13 @@ impl Plan {
                 Patience { near: 1.15, slope: 50.0, returns: 3, returns_if_wide: 3 }
             }
         };
-        let near = if disp { 16 } else { 0 };
+        let translations_suffice = disp.then_some(1.02);
+        let beside = if disp { 16 } else { 0 };
         match effort {
             Effort::Fast => Plan {
-                translations_suffice: disp.then_some(1.02),
-                near: 0,
                 rays: rays(20, 12, 1.1, 2),
+                translations_suffice,
+                beside: 0,
                 rounds: 1,
                 patience,
                 work: 4_000,
@@ -106,9 +107,9 @@ impl Plan {
                 hope: 0.97,
             },
             Effort::Default => Plan {
-                translations_suffice: disp.then_some(1.02),
-                near,
                 rays: rays(32, 64, if disp { 1.2 } else { 1.3 }, 5),
+                translations_suffice,
+                beside,
                 rounds: 20,
                 patience,
                 work: 8_000,
@@ -117,9 +118,9 @@ impl Plan {
                 hope: if disp { 0.95 } else { 1.0 },
             },
             Effort::Heavy => Plan {
-                translations_suffice: None,
-                near: 4 * near,
                 rays: rays(64, 128, 1.4, 10),
+                translations_suffice: None,
+                beside: 4 * beside,
                 rounds: 20,
                 patience: Patience { near: 1.001, slope: f64::INFINITY, returns: 30, returns_if_wide: 30 },
                 work: 200_000,
@@ -157,6 +158,7 @@ mod tests {
         let patience = Patience { near: 1.01, ..PATIENCE };
         assert!(patience.goes_on(0, 1.0, 1.05, 2));
         assert!(!patience.goes_on(0, 1.0, 1.05, 3));
+        assert!(!patience.goes_on(0, 0.0, 9.0, 3));
     }
 
     #[test]
