@@ -321,7 +321,8 @@ typedef struct {
     uint64_t queries;
 } qdist_mesh_progress;
 
-// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far. Draw a progress
+// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far, after
+// some tens of queries at most that bring the best pose to contact. Draw a progress
 // bar, look at a clock, or at a flag that another thread sets (atomically).
 //
 // user: watch_user of the options. progress: valid during the call.
@@ -395,7 +396,7 @@ typedef struct {
 // The bracket is as narrow as asked for.
 #define QDIST_MESH_CONVERGED 0
 
-// The search is complete, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
+// All that the effort or the tick's budget provides for was done, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
 #define QDIST_MESH_BOUNDED 1
 
 // The bodies do not overlap: both bounds are 0, and `distance` is filled.
@@ -462,14 +463,13 @@ typedef struct {
     uint32_t struct_size;
     // QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
     qdist_mesh_metric metric;
-    // Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, in the first tick and after
-    // a jump, up to 14 more.
+    // Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, up to 6 more.
     uint64_t max_queries;
     // The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     double relative;
     // Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
     uint32_t probes;
-    // 1 (default): lower bounds are renewed when a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
+    // 1 (default): lower bounds are renewed when there is none or a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
     uint32_t certify;
     // With how much effort; default QDIST_MESH_FAST.
     qdist_mesh_effort effort;

@@ -10,7 +10,7 @@ use crate::input::{self, Kind};
 pub const USAGE: &str = "\
 usage: pdg --queries FILE.json [options]                          the queries of a file (format: head of examples/pdg/input.rs)
        pdg A B --pose qw,qx,qy,qz,tx,ty,tz [--pose ...] [options]  two mesh files (OBJ, STL, PLY, OFF); without a pose, what is wrong with them;
-                                                                  q of length 1 to 1e-3, x_B = R x_A + t
+                                                                  x_B = R x_A + t, |q| = 1 within 1e-3
        pdg --table1 [--queries FILE.json] [options]               the paper's Table I beside ours
 options:
   --metric disp|sigma          the largest displacement, or the root mean square one (the root of the object norm); else both,

@@ -73,7 +73,8 @@ fn run(request: &Request) -> Result<(), String> {
                 eprint!("{report}");
             }
         } else {
-            print!("{report}");
+            // Who no longer reads has seen enough.
+            let _ = write!(io::stdout(), "{report}");
         }
     }
     match answer_all(request, &queries, &bodies, &bar) {
@@ -147,7 +148,7 @@ fn answer_all(
 
 fn main() -> ExitCode {
     if std::env::args().any(|argument| argument == "--help" || argument == "-h") {
-        println!("{}", args::USAGE);
+        let _ = writeln!(io::stdout(), "{}", args::USAGE);
         return ExitCode::SUCCESS;
     }
     let request = match Request::parse(std::env::args().skip(1)) {

@@ -47,7 +47,8 @@ fn check(row: &Row) -> String {
     }
     let width = match row.upper > 0.0 && row.upper.is_finite() {
         true => format!("{:.2} % wide", 100.0 * (1.0 - row.lower / row.upper)),
-        false => "no upper bound".to_string(),
+        false if row.upper == f64::INFINITY => "no upper bound".to_string(),
+        false => "no depth".to_string(),
     };
     let compared = row.known.least().or(row.known.lower).is_some();
     let width = if compared { format!("true, {width}") } else { width };

@@ -33,7 +33,7 @@
 //! let pose = Isometry3::translation(0.0, 0.0, 0.9);
 //! let cold = DepthSolver::new(&body, &body).depth(&pose, body.disp(), &DepthOptions::default(), None);
 //! assert_eq!(cold.outcome, Outcome::Converged);
-//! assert!(cold.lower > 0.0577 && cold.upper < 0.0578); // a third of 0.1 along the slanted face, times the root of 3
+//! assert!(cold.lower > 0.0576 && cold.upper < 0.0578); // 0.1 / sqrt(3), across the slanted face
 //!
 //! let mut tracker = DepthTracker::new(&body, &body); // for a control loop
 //! tracker.merge(&cold);

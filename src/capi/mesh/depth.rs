@@ -30,7 +30,7 @@ pub type qdist_mesh_outcome = i32;
 
 /// The bracket is as narrow as asked for.
 pub const QDIST_MESH_CONVERGED: qdist_mesh_outcome = 0;
-/// The search is complete, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
+/// All that the effort or the tick's budget provides for was done, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
 pub const QDIST_MESH_BOUNDED: qdist_mesh_outcome = 1;
 /// The bodies do not overlap: both bounds are 0, and `distance` is filled.
 pub const QDIST_MESH_SEPARATED: qdist_mesh_outcome = 2;
@@ -95,7 +95,8 @@ pub struct qdist_mesh_progress {
     pub queries: u64,
 }
 
-/// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far. Draw a progress
+/// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far, after
+/// some tens of queries at most that bring the best pose to contact. Draw a progress
 /// bar, look at a clock, or at a flag that another thread sets (atomically).
 ///
 /// user: watch_user of the options. progress: valid during the call.

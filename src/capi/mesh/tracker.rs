@@ -85,14 +85,13 @@ pub struct qdist_mesh_budget {
     pub struct_size: u32,
     /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
     pub metric: qdist_mesh_metric,
-    /// Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, in the first tick and after
-    /// a jump, up to 14 more.
+    /// Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, up to 6 more.
     pub max_queries: u64,
     /// The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     pub relative: f64,
     /// Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
     pub probes: u32,
-    /// 1 (default): lower bounds are renewed when a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
+    /// 1 (default): lower bounds are renewed when there is none or a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
     pub certify: u32,
     /// With how much effort; default QDIST_MESH_FAST.
     pub effort: qdist_mesh_effort,

@@ -37,7 +37,9 @@ impl std::fmt::Display for SolidError {
                 )
             }
             SolidError::Volume => write!(f, "triangles: the volume is not positive (wound inside out, or flat)"),
-            SolidError::Inverted(component) => write!(f, "triangles: component {component} is wound inside out"),
+            SolidError::Inverted(component) => {
+                write!(f, "triangles: component {component} is wound inside out and is no cavity")
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Walks of the search end early. What they leave is taken here:
 //!
-//! * Where corners meet corners, planes stop a walk short of its end; the last one takes unions instead (`branching`).
+//! * Where corners meet corners, planes stop a walk short of its end; one from the best pose takes unions instead (`branching`).
 //! * Translations near by may be over the edge of a neighbouring valley (`rays::beside`).
 //! * The least motion often does not turn at all. A walk that turns comes near it and creeps; the program in three variables ends there.
 //! * The pose is brought to where it touches.
@@ -13,26 +13,26 @@ use super::search::Search;
 use super::seeds::rays;
 use super::walk::{Bounds, ITERATIONS, follow, translate};
 
-/// The first trust region of the last walk, in diagonals of A. The pose is nearly there.
-const TRUST: f64 = 0.01;
+/// The first trust region of the walk from the best pose, in diagonals of A. The pose is nearly there.
+const REFINE_TRUST: f64 = 0.01;
 /// How often a neighbour's neighbours are tried.
 const HOPS: usize = 3;
 /// No translation is looked for where it would gain less than this fraction.
 const WORTHWHILE: f64 = 5e-4;
 /// The least gain of an iteration of the last translation.
-const TRANSLATION_GAIN: f64 = 1e-5;
+const LAST_GAIN: f64 = 1e-5;
 
 /// Improves the best pose as far as that goes.
 pub fn finish(search: &mut Search, plan: &Plan) {
     refine(search, plan.gain);
-    if search.walk == Walk::Linearised {
+    if search.walk_kind == Walk::Linearised {
         if hop(search, plan) {
             refine(search, plan.gain);
         }
         if is_worthwhile(search)
             && let Some(pose) = rays::without_turning(search)
         {
-            translate(search, &pose, TRANSLATION_GAIN);
+            translate(search, &pose, LAST_GAIN);
         }
     }
     polish(search);
@@ -48,13 +48,13 @@ fn refine(search: &mut Search, gain: f64) {
     if !search.upper.is_finite() || !search.goes_on() {
         return;
     }
-    let kind = search.walk;
+    let kind = search.walk_kind;
     if kind == Walk::Linearised {
-        search.walk = Walk::Branching;
+        search.walk_kind = Walk::Branching;
     }
     let pose = search.pose;
-    follow(search, &pose, TRUST * search.size, ITERATIONS, &Bounds { gain, hopeless: f64::INFINITY });
-    search.walk = kind;
+    follow(search, &pose, REFINE_TRUST * search.size, ITERATIONS, &Bounds { gain, hopeless: f64::INFINITY });
+    search.walk_kind = kind;
 }
 
 /// Goes over to better valleys beside the best pose. Whether there was one.

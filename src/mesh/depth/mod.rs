@@ -66,7 +66,8 @@ pub enum Walk {
     #[default]
     Linearised,
     /// The same with unions of constraints where convex corners meet corners or edges, each member in turn (sections IV-A and IV-B.2 of
-    /// the paper). From a seed it finds what the linearised walk finds, and takes longer; the last walk of a linearised search is of this kind.
+    /// the paper). From a seed it finds what the linearised walk finds, and takes longer; in the end a linearised search takes one from the best
+    /// pose.
     Branching,
     /// Random samples on the contacts (section IV-B.1 of the paper).
     Sampling,
@@ -166,7 +167,7 @@ pub struct Progress<'a> {
     pub queries: u64,
 }
 
-/// What is called now and then during a query; false stops it.
+/// What is called now and then during a query; false stops it, after some tens of queries at most that bring the best pose to contact.
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) -> bool + 'a);
 
 /// Two models and the memory of their queries.
@@ -187,7 +188,9 @@ struct Scratch {
     branches: Branches,
     constraints: Vec<Constraint>,
     memory: StepMemory,
-    /// Where walks of this query ended.
+    /// Where walks of this query began.
+    begins: Vec<Isometry3<f64>>,
+    /// And where they ended.
     ends: Vec<Isometry3<f64>>,
 }
 
@@ -206,6 +209,7 @@ impl<'m> DepthSolver<'m> {
                 branches: Branches::default(),
                 constraints: Vec::new(),
                 memory: StepMemory::new(walk::CONTACTS),
+                begins: Vec::new(),
                 ends: Vec::new(),
             },
         }

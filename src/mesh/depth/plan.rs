@@ -34,7 +34,7 @@ pub struct Plan {
     pub work: usize,
     /// The least gain of an iteration of the walks.
     pub coarse: f64,
-    /// That of the last walk, from the best pose.
+    /// That of the walk from the best pose in the end.
     pub gain: f64,
     /// A walk is given up when it will not come below this multiple of the best.
     pub hope: f64,

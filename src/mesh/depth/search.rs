@@ -38,7 +38,7 @@ pub(super) struct Search<'s, 'm, 'w> {
     pub lower: f64,
     pub walks: u32,
     /// How the walks step.
-    pub walk: Walk,
+    pub walk_kind: Walk,
     /// Share of the work that is done.
     fraction: f64,
     stop: Option<Outcome>,
@@ -58,6 +58,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         watch: Option<Watch<'w>>,
     ) -> Self {
         let before = solver.pair.counters();
+        solver.scratch.begins.clear();
         solver.scratch.ends.clear();
         let pose = normalised(pose);
         Search {
@@ -77,7 +78,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             upper: f64::INFINITY,
             lower: 0.0,
             walks: 0,
-            walk: options.walk,
+            walk_kind: options.walk,
             fraction: 0.0,
             stop: None,
             before,
@@ -112,7 +113,10 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             self.walk(&seed, plan.gain, f64::INFINITY);
         }
         for round in 1..plan.rounds {
-            if !self.options.rays || !plan.patience.goes_on(round, self.lower, self.upper, self.returns()) {
+            if !self.options.rays
+                || self.upper == f64::INFINITY
+                || !plan.patience.goes_on(round, self.lower, self.upper, self.returns())
+            {
                 break;
             }
             let best = Seed { pose: self.pose, value: self.upper };
@@ -133,14 +137,14 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
 
     /// The first round. Where translations and the lower bound say nearly the same, no ray that turns is cast.
     fn begin(&mut self, plan: &Plan, escape: Seed) {
-        let Some(near) = plan.translations_suffice.filter(|_| self.options.rays) else {
+        let Some(near) = plan.translations_suffice.filter(|_| self.options.rays && self.lower > 0.0) else {
             return self.explore(plan, 0, &escape);
         };
         let translations = rays::Plan { screws: 0, seeds: 1, ..plan.rays };
         for seed in rays::cast(self, &translations, 0, &escape) {
             self.walk(&seed.pose, plan.coarse, f64::INFINITY);
         }
-        if self.upper > near * self.lower {
+        if self.upper.is_finite() && self.upper > near * self.lower {
             let best = Seed { pose: self.pose, value: self.upper };
             self.explore(plan, 0, &best);
         }
@@ -149,8 +153,8 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
     fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
         let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
-        // Where a walk has ended, none begins.
-        let walked = self.scratch.ends.contains(&known.pose);
+        // Where a walk has begun or ended, none begins.
+        let walked = self.scratch.ends.contains(&known.pose) || self.scratch.begins.contains(&known.pose);
         let seeds = seeds.iter().filter(|seed| !walked || seed.pose != known.pose);
         for (k, seed) in seeds.enumerate() {
             self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
@@ -165,6 +169,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
         if self.goes_on() {
             let end = walk(self, from, &Bounds { gain, hopeless });
+            self.scratch.begins.push(*from);
             self.scratch.ends.push(end);
         }
     }
@@ -201,7 +206,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let (now, before) = (self.pair.counters(), self.before);
         MeshDepth {
             outcome,
-            lower: self.lower,
+            lower: self.lower.min(self.upper),
             upper: self.upper,
             pose: self.pose,
             distance: None,
@@ -215,17 +220,28 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Whether to go on. Asks the caller.
-    pub fn goes_on(&mut self) -> bool {
-        if self.stop.is_some() {
-            return false;
-        }
-        let queries = total(&self.pair.counters()) - total(&self.before);
+    /// Queries so far.
+    fn queries(&self) -> u64 {
+        total(&self.pair.counters()) - total(&self.before)
+    }
+
+    /// Whether the caller has said stop. Asks, until it was said.
+    pub fn is_interrupted(&mut self) -> bool {
+        let queries = self.queries();
         let progress =
             Progress { lower: self.lower, upper: self.upper, pose: &self.pose, fraction: self.fraction, queries };
-        if self.watch.as_mut().is_some_and(|watch| !watch(&progress)) {
+        if self.stop != Some(Outcome::Interrupted) && self.watch.as_mut().is_some_and(|watch| !watch(&progress)) {
             self.stop = Some(Outcome::Interrupted);
-        } else if queries >= self.options.max_queries {
+        }
+        self.stop == Some(Outcome::Interrupted)
+    }
+
+    /// Whether to go on. Asks the caller.
+    pub fn goes_on(&mut self) -> bool {
+        if self.stop.is_some() || self.is_interrupted() {
+            return false;
+        }
+        if self.queries() >= self.options.max_queries {
             self.stop = Some(Outcome::Budget);
         } else if self.is_closed() {
             self.stop = Some(Outcome::Converged);

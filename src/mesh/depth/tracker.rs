@@ -64,8 +64,8 @@ const ROUNDING: f64 = 1e-12;
 /// What a tick may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Collision, contact and distance queries, at least 1, default 16: the pose itself is always tested. On top come, where no free pose is known, the
-    /// escape from B's box, and in the first tick and after a jump the queries of a push-out step that has begun: 14 in all at most.
+    /// Collision, contact and distance queries, at least 1, default 16: the pose itself is always tested. Where no free pose is known the
+    /// escape from B's box comes on top, six tests at most.
     pub max_queries: u64,
     /// The tick ends when `upper - lower` is at most this fraction of `upper`, default 1e-3.
     pub relative: f64,
@@ -172,7 +172,8 @@ impl<'m> DepthTracker<'m> {
         free
     }
 
-    /// The depth of A at a pose, by a metric of A. `late` is asked before every query; once it says true, no other query begins. The bracket
+    /// The depth of A at a pose, by a metric of A. `late` is asked before every query (the escape from B's box counts as one);
+    /// once it says true, no other query begins. The bracket
     /// is true however little was allowed: its pose was tested free, or `upper` is infinite ([`Outcome::Stuck`]).
     ///
     /// When the bodies are apart the answer is [`Outcome::Separated`], with the distance if the budget has a query left for it. The outcome is
@@ -229,14 +230,15 @@ impl<'m> DepthTracker<'m> {
                 remember(known, Known { pose: moved, trust: None }, metric, pose, 0.0);
             }
         }
-        if known.is_empty() && rays::escape(&mut search).is_some() {
-            known.push(Known { pose: search.pose, trust: None });
-        }
-        // Without any bound nothing tells that the best pose is good enough.
+        // A pose that is known, a cold answer's perhaps, may be all that is needed; nothing else tells.
         if let (Some(slot), Some(_), None) = (slot, budget.certificate, bound)
-            && !late.is_some_and(|late| late())
+            && search.upper.is_finite()
+            && !search.is_interrupted()
         {
             certified[slot] = certify(&mut search);
+        }
+        if known.is_empty() && !search.is_interrupted() && rays::escape(&mut search).is_some() {
+            known.push(Known { pose: search.pose, trust: None });
         }
         if motion > JUMP * search.size
             && search.goes_on()
@@ -269,10 +271,12 @@ impl<'m> DepthTracker<'m> {
             refine(&mut search, known, beside, motion, STEPS_BESIDE);
         }
 
-        if let (Some(slot), Some(_), Some(bound)) = (slot, budget.certificate, bound) {
-            let lost = bound.lower - search.lower.min(bound.lower);
-            let moved = metric.distance(&bound.at, pose);
-            if lost.max(moved) > LOST * search.upper && !late.is_some_and(|late| late()) {
+        if let (Some(slot), Some(_)) = (slot, budget.certificate) {
+            let is_stale = |bound: Certified| {
+                let lost = bound.lower - search.lower.min(bound.lower);
+                lost.max(metric.distance(&bound.at, pose)) > LOST * search.upper
+            };
+            if certified[slot].is_none_or(is_stale) && !search.is_interrupted() {
                 certified[slot] = certify(&mut search);
             }
         }

@@ -3,7 +3,7 @@
 //! Every iterate is free. At one, the contacts within a margin say to first order how A may move, n.(v + w x r) >= -(gap - clearance),
 //! and the metric's step says which of these motions brings A nearest to the start. A pair of features at a local minimum of the distance has
 //! one normal, along the gap; so a corner that faces a corner is one plane that either may slide along. Where the gap is small that plane turns
-//! fast, and a walk round the corner creeps; the last walk, from the best pose, takes the union of what the faces forbid instead (section IV-A,
+//! fast, and a walk round the corner creeps; in the end a walk from the best pose takes the union of what the faces forbid instead (section IV-A,
 //! `branching`).
 //!
 //! Contacts that would become local minima when A turns a little count too: where a corner lies near an edge, the corner on the face and the
@@ -64,14 +64,14 @@ enum Freedom {
 /// Walks from a free pose, and offers where it ends. Returns that pose.
 pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
     let mut pose = search.slide(from, 0.2 * MARGIN * search.size);
-    if from.rotation == search.start.rotation && search.walk == Walk::Linearised {
+    if from.rotation == search.start.rotation && search.walk_kind == Walk::Linearised {
         let bounds = Bounds { gain: TRANSLATION_GAIN, ..*bounds };
         pose = advance(search, &pose, TRUST * search.size, ITERATIONS, Freedom::Translation, &bounds).0;
     }
     follow(search, &pose, TRUST * search.size, ITERATIONS, bounds).0
 }
 
-/// Walks from a free pose without turning, and offers where it ends.
+/// Walks from a free pose without turning, by linearised steps, and offers where it ends.
 pub fn translate(search: &mut Search, from: &Isometry3<f64>, gain: f64) {
     let pose = search.slide(from, 0.2 * MARGIN * search.size);
     let bounds = Bounds { gain, hopeless: f64::INFINITY };
@@ -148,10 +148,10 @@ fn step(
     clearance: f64,
     freedom: Freedom,
 ) -> Option<(Isometry3<f64>, f64, f64)> {
-    let found = match search.walk {
-        Walk::Branching if freedom == Freedom::Motion => branched_step(search, pose, trust, margin, clearance)?,
-        Walk::Sampling if freedom == Freedom::Motion => sampled_step(search, pose, trust, margin, clearance)?,
-        _ => linear_step(search, pose, trust, margin, clearance, freedom)?,
+    let found = match search.walk_kind {
+        Walk::Linearised => linear_step(search, pose, trust, margin, clearance, freedom)?,
+        Walk::Branching => branched_step(search, pose, trust, margin, clearance)?,
+        Walk::Sampling => sampled_step(search, pose, trust, margin, clearance)?,
     };
     let length = found.linear.norm().max(found.angular.norm() * search.metric.frame().radius);
     let mut fraction = 1.0;

@@ -108,8 +108,10 @@ pub fn beside(search: &mut Search, translations: usize) -> Option<Isometry3<f64>
     let mut found = None;
     for k in 0..translations {
         let direction = turn * on_cap(k, translations, BESIDE.cos());
+        let best = search.upper;
         if search.goes_on()
-            && let Some(seed) = ray(search, direction, Vector3::zeros(), BETTER * search.upper)
+            && let Some(seed) = ray(search, direction, Vector3::zeros(), BETTER * best)
+            && seed.value < best
         {
             found = Some(seed.pose);
         }

@@ -86,7 +86,7 @@ impl std::fmt::Display for SamplesError {
 impl std::error::Error for SamplesError {}
 
 impl ContactSamples {
-    /// The samples as bytes, alike on every machine and in every release that reads their version: 56 for each, and 48. To be read by
+    /// The samples as bytes, alike on every machine and in every release that reads their version: 48 and 56 for each sample. To be read by
     /// [`from_bytes`](ContactSamples::from_bytes) alone.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
