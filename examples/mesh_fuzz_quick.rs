@@ -333,7 +333,9 @@ fn check(
         if Pair::new(a.mesh(), b.mesh()).collides(&depth.pose) {
             fail("the pose collides");
         }
-        let value = metric.distance(at, &depth.pose);
+        // A quaternion of nearly unit length means the rotation of it over its length.
+        let rotation = UnitQuaternion::new_normalize(at.rotation.into_inner());
+        let value = metric.distance(&Isometry3::from_parts(at.translation, rotation), &depth.pose);
         if (value - upper).abs() > 1e-12 * (value + upper) + 1e-14 * a.mesh().diagonal() {
             fail("the pose has another distance");
         }

@@ -137,7 +137,7 @@ pub struct MeshDepth {
     pub outcome: Outcome,
     /// No free pose is nearer than this.
     pub lower: f64,
-    /// The metric's distance of `pose`.
+    /// The metric's distance of `pose` from the query's, whose quaternion is taken over its length.
     pub upper: f64,
     /// A free pose by the solid test, in the frame of B; the query's own when it is free, or when the outcome is
     /// [`Outcome::Stuck`] or [`Outcome::Invalid`].
