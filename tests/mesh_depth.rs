@@ -9,8 +9,7 @@ use common::shared;
 use mesh_common::*;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use qdist::mesh::certificate::SolidError;
-use qdist::mesh::metric::{BodyFrame, Metric};
-use qdist::mesh::optimize::Quadratic;
+use qdist::mesh::metric::{Certificate, Metric};
 use qdist::mesh::{DepthOptions, DepthSolver, Effort, MeshDepth, Model, Outcome, Pair, Progress, Walk};
 use std::f64::consts::FRAC_PI_4;
 
@@ -243,31 +242,17 @@ fn bad_input_is_an_outcome() {
     assert!((answer.upper - 0.2).abs() < 1e-3);
 }
 
-/// No pose but the query's own is at a distance that is a number.
-struct Unreachable<'m>(&'m dyn Metric);
-
-impl Metric for Unreachable<'_> {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        if from == to { 0.0 } else { f64::INFINITY }
-    }
-
-    fn frame(&self) -> &BodyFrame {
-        self.0.frame()
-    }
-
-    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
-        self.0.model(from, at)
-    }
-}
-
 /// Where no pose was found, further rounds used to walk from the query's own, which overlaps, and took it for an answer of depth 0.
 #[test]
 fn without_a_pose_there_is_no_upper_bound() {
     let body = certified(&cuboid([0.5; 3]));
     let pose = Isometry3::translation(0.1, 0.2, 0.3);
+    // No pose but the query's own is at a distance that is a number.
+    let distance = |from: &Isometry3<f64>, to: &Isometry3<f64>| if from == to { 0.0 } else { f64::INFINITY };
+    let unreachable = Own { like: body.disp(), certificate: Certificate::None, distance };
     for effort in [Effort::Fast, Effort::Default, Effort::Heavy] {
         let options = DepthOptions { effort, ..DepthOptions::default() };
-        let answer = DepthSolver::new(&body, &body).depth(&pose, &Unreachable(body.disp()), &options, None);
+        let answer = DepthSolver::new(&body, &body).depth(&pose, &unreachable, &options, None);
         assert_eq!((answer.outcome, answer.upper, answer.pose), (Outcome::Stuck, f64::INFINITY, pose));
         assert_eq!(answer.lower, 0.0);
     }

@@ -7,8 +7,7 @@ mod mesh_common;
 use common::dice::Dice;
 use mesh_common::*;
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
-use qdist::mesh::metric::{BodyFrame, Certificate, Metric};
-use qdist::mesh::optimize::Quadratic;
+use qdist::mesh::metric::{Certificate, Metric};
 use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver, Model, Pair, SamplesError};
 
 fn model(shape: &Shape) -> Model {
@@ -100,29 +99,16 @@ fn brute(
     chosen
 }
 
-/// A metric of the caller's that no bound is known of, and that mostly ignores translations.
-struct Turning<'m>(&'m dyn Metric);
-
-impl Metric for Turning<'_> {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        from.rotation.angle_to(&to.rotation) + 1e-3 * (from.translation.vector - to.translation.vector).norm()
-    }
-
-    fn frame(&self) -> &BodyFrame {
-        self.0.frame()
-    }
-
-    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
-        self.0.model(from, at)
-    }
-}
-
 #[test]
 fn the_nearest_are_those_of_brute_force_and_keep_their_distance() {
     let mut dice = Dice::new(4);
     for (a, b) in &pairs() {
         let samples = ContactSamples::new(a, b, 300, 2, None);
-        let turning = Turning(a.disp());
+        // No bound is known of it, and it mostly ignores translations.
+        let distance = |from: &Isometry3<f64>, to: &Isometry3<f64>| {
+            from.rotation.angle_to(&to.rotation) + 1e-3 * (from.translation.vector - to.translation.vector).norm()
+        };
+        let turning = Own { like: a.disp(), certificate: Certificate::None, distance };
         let mut metrics: Vec<&dyn Metric> = vec![a.disp(), &turning];
         metrics.extend(a.sigma().map(|sigma| sigma as &dyn Metric));
         for _ in 0..20 {
@@ -140,37 +126,20 @@ fn the_nearest_are_those_of_brute_force_and_keep_their_distance() {
     }
 }
 
-/// Counts how often it is asked.
-struct Counting<'m>(&'m dyn Metric, std::cell::Cell<usize>);
-
-impl Metric for Counting<'_> {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        self.1.set(self.1.get() + 1);
-        self.0.distance(from, to)
-    }
-
-    fn certificate(&self) -> Certificate {
-        self.0.certificate()
-    }
-
-    fn frame(&self) -> &BodyFrame {
-        self.0.frame()
-    }
-
-    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
-        self.0.model(from, at)
-    }
-}
-
 #[test]
 fn the_metric_is_asked_for_few_samples() {
     let [(a, b), ..] = &pairs();
     let samples = ContactSamples::new(a, b, 1000, 2, None);
-    let metric = Counting(a.sigma().unwrap(), Default::default());
+    let (sigma, asked) = (a.sigma().unwrap(), std::cell::Cell::new(0));
+    let distance = |from: &Isometry3<f64>, to: &Isometry3<f64>| {
+        asked.set(asked.get() + 1);
+        sigma.distance(from, to)
+    };
+    let metric = Own { like: sigma, certificate: sigma.certificate(), distance };
     for pose in ContactSamples::new(a, b, 10, 3, None).poses() {
         assert_eq!(samples.nearest(&metric, pose, 6, 0.0).len(), 6);
     }
-    let mean = metric.1.get() / 10;
+    let mean = asked.get() / 10;
     assert!(mean < 300, "{mean} of 1000");
 }
 

@@ -3,11 +3,38 @@
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use qdist::mesh::Mesh;
+use qdist::mesh::metric::{BodyFrame, Certificate, Metric};
+use qdist::mesh::optimize::Quadratic;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::common::dice::Dice;
+
+/// A metric of the caller's: distances of its own, in all else like another.
+pub struct Own<'m, F> {
+    pub like: &'m dyn Metric,
+    pub certificate: Certificate,
+    pub distance: F,
+}
+
+impl<F: Fn(&Isometry3<f64>, &Isometry3<f64>) -> f64> Metric for Own<'_, F> {
+    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        (self.distance)(from, to)
+    }
+
+    fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+
+    fn frame(&self) -> &BodyFrame {
+        self.like.frame()
+    }
+
+    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
+        self.like.model(from, at)
+    }
+}
 
 /// Vertices and triangles.
 #[derive(Clone, Debug, Default)]

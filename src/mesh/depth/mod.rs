@@ -188,10 +188,8 @@ struct Scratch {
     branches: Branches,
     constraints: Vec<Constraint>,
     memory: StepMemory,
-    /// Where walks of this query began.
-    begins: Vec<Isometry3<f64>>,
-    /// And where they ended.
-    ends: Vec<Isometry3<f64>>,
+    /// Where walks of this query began and ended.
+    walked: Vec<[Isometry3<f64>; 2]>,
 }
 
 impl<'m> DepthSolver<'m> {
@@ -209,8 +207,7 @@ impl<'m> DepthSolver<'m> {
                 branches: Branches::default(),
                 constraints: Vec::new(),
                 memory: StepMemory::new(walk::CONTACTS),
-                begins: Vec::new(),
-                ends: Vec::new(),
+                walked: Vec::new(),
             },
         }
     }

@@ -58,8 +58,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         watch: Option<Watch<'w>>,
     ) -> Self {
         let before = solver.pair.counters();
-        solver.scratch.begins.clear();
-        solver.scratch.ends.clear();
+        solver.scratch.walked.clear();
         let pose = normalised(pose);
         Search {
             size: solver.a.mesh().diagonal(),
@@ -154,7 +153,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
     fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
         let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
         // Where a walk has begun or ended, none begins.
-        let walked = self.scratch.ends.contains(&known.pose) || self.scratch.begins.contains(&known.pose);
+        let walked = self.scratch.walked.iter().flatten().any(|pose| *pose == known.pose);
         let seeds = seeds.iter().filter(|seed| !walked || seed.pose != known.pose);
         for (k, seed) in seeds.enumerate() {
             self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
@@ -165,19 +164,18 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         }
     }
 
-    /// Walks from a free pose, and notes where that ends.
+    /// Walks from a free pose, and notes where that began and ended.
     pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
         if self.goes_on() {
             let end = walk(self, from, &Bounds { gain, hopeless });
-            self.scratch.begins.push(*from);
-            self.scratch.ends.push(end);
+            self.scratch.walked.push([*from, end]);
         }
     }
 
     /// How many walks have ended at the best pose.
     fn returns(&self) -> usize {
-        let at_best = |end: &&Isometry3<f64>| self.metric.distance(&self.pose, end) < SAME * self.upper;
-        self.scratch.ends.iter().filter(at_best).count()
+        let is_at_best = |end: &Isometry3<f64>| self.metric.distance(&self.pose, end) < SAME * self.upper;
+        self.scratch.walked.iter().filter(|[_, end]| is_at_best(end)).count()
     }
 
     /// Whether the query's pose and options are proper numbers.
