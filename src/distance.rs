@@ -4,6 +4,7 @@
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
 
+use crate::bounds::Reach;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
@@ -24,42 +25,46 @@ const STEPS: usize = 128;
 
 /// Walks to the point nearest to the origin, starting with the support point along `first`. The distance is at most the norm
 /// of the current point, and at least minus any support value along a unit direction, which `support` gets to
-/// see. `watch` is told the norm after every support call and ends the walk by returning `true`.
+/// see. `watch` is told the point after every support call and ends the walk by returning `true`.
 pub fn nearest<T: Real, const N: usize>(
     first: &Vector<T, N>,
     mut support: impl FnMut(&Vector<T, N>) -> Result<Vertex<T, N>, Failure>,
-    mut watch: impl FnMut(T) -> bool,
+    mut watch: impl FnMut(&Vector<T, N>) -> bool,
 ) -> Result<Nearest<T, N>, Failure> {
     let vertex = support(first)?;
-    let mut reach = norm(&vertex.point);
+    let mut reach = Reach::none();
+    reach.see(&vertex.point, vertex.point.dot(&vertex.point));
     let mut simplex = Simplex::new(vertex);
-    let mut distance = reach;
+    let mut point = vertex.point;
+    let mut distance = norm(&point);
     let mut inside = false;
     for _ in 0..STEPS {
-        let resolution = T::count(8 * N) * T::ROUNDOFF * reach;
-        if !(distance > resolution) || simplex.corners.len() > N {
+        let far = distance > reach.resolution();
+        let far = far || (distance > T::TINY && distance > reach.resolution_along(&(point / distance)));
+        if !far || simplex.corners.len() > N {
             inside = true;
             break;
         }
-        let direction = simplex.towards_origin(distance, reach);
+        let direction = simplex.towards_origin(distance, reach.whole);
         let vertex = support(&direction)?;
         let height = direction.dot(&vertex.point);
-        reach = reach.at_least(norm(&vertex.point));
-        if watch(distance) || height + distance <= resolution {
+        reach.see(&vertex.point, vertex.point.dot(&vertex.point));
+        if watch(&point) || height + distance <= reach.resolution_along(&direction) {
             break;
         }
         let before = simplex.clone();
         if !simplex.push(vertex) {
             break;
         }
-        let solved = simplex.minimize(resolution);
-        let now = norm(&simplex.point());
+        let solved = simplex.minimize(reach.resolution());
+        let next = simplex.point();
+        let now = norm(&next);
         if now >= distance {
             // Rounding has the last word: keep the better point.
             simplex = before;
             break;
         }
-        distance = now;
+        (point, distance) = (next, now);
         if !solved {
             break;
         }

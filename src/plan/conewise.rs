@@ -212,8 +212,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             return Ok(End::Stopped(stop));
         }
         let center = cone.direction(&Vector::repeat(T::one()));
-        let (apex, height) = query.support(&(center * (T::one() / norm(&center))))?;
-        if query.is_outside(height) {
+        let center = center * (T::one() / norm(&center));
+        let (apex, height) = query.support(&center)?;
+        if query.is_outside(&center, height) {
             return Ok(End::Stopped(Stop::Outside));
         }
         let within = |v: Vertex<T, N>| Vertex { point: cone.coordinates(&v.point), ..v };
@@ -231,8 +232,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 return Ok(End::Stopped(stop));
             }
             let Some(&Facet { normal, offset, .. }) = self.facet(index) else { break };
-            let (vertex, height) = query.support(&cone.direction(&normal))?;
-            if query.is_outside(height) {
+            let direction = cone.direction(&normal);
+            let (vertex, height) = query.support(&direction)?;
+            if query.is_outside(&direction, height) {
                 return Ok(End::Stopped(Stop::Outside));
             }
             if query.is_below() {

@@ -45,13 +45,13 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 return end(stop);
             }
             let (vertex, height) = query.support(&normal)?;
-            if query.is_outside(height) {
+            if query.is_outside(&normal, height) {
                 if !self.confirm(query)? {
                     continue;
                 }
                 return end(Stop::Outside);
             }
-            let tolerance = self.resolution();
+            let tolerance = self.resolution_along(&normal);
             // On the boundary of A, as far as arithmetic can tell?
             let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
             if let Some(stop) = self.verdict(query, key).or(final_facet) {
@@ -60,7 +60,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 }
                 return end(stop);
             }
-            match self.insert(index, vertex, tolerance) {
+            match self.insert(index, vertex, T::zero()) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 Some(Insertion::Full) => return end(Stop::Capacity),
                 Some(Insertion::Rejected) | None => return end(Stop::Rounding),
@@ -98,6 +98,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
     /// inside.
     pub(crate) fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
+        if self.is_sound() && query.is_graded() {
+            return query.lower_by_direction(self.facets());
+        }
         self.lower_up_to(query, key, query.margin())
     }
 
@@ -136,7 +139,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         while start.missing() > 0 {
             let direction = start.direction();
             let Some(vertex) = sample(query, &start, &direction, true)? else { return Ok(Some(Stop::Outside)) };
-            let thin = (self.resolution() + query.margin()) * T::count(4);
+            let thin = (self.resolution_along(&direction) + query.margin_along(&direction)) * T::count(4);
             if start.accept(&vertex.point, thin) {
                 if self.add_vertex(vertex).is_none() {
                     return Ok(Some(Stop::Capacity));
@@ -171,11 +174,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             }
             let Some((index, normal, offset)) = self.nearest_facet() else { return Ok(()) };
             let (vertex, height) = query.support(&normal)?;
-            let tolerance = self.resolution();
+            let tolerance = self.resolution_along(&normal);
             if height - offset <= tolerance + tolerance {
                 return Ok(());
             }
-            match self.insert(index, vertex, tolerance) {
+            match self.insert(index, vertex, T::zero()) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 _ => return Ok(()),
             }
@@ -226,7 +229,7 @@ pub(crate) fn sample<T: Real, const N: usize>(
 ) -> Result<Option<Vertex<T, N>>, Failure> {
     let heed = heed && query.bounds.radius == T::zero();
     let (vertex, height) = query.support(direction)?;
-    if heed && query.is_outside(height) && query.verify()? {
+    if heed && query.is_outside(direction, height) && query.verify()? {
         return Ok(None);
     }
     // (The first point may be the origin, and the reach 0.)
@@ -234,8 +237,9 @@ pub(crate) fn sample<T: Real, const N: usize>(
     if progress > query.reach() * T::of(0.01) {
         return Ok(Some(vertex));
     }
-    let (other, height) = query.support(&-direction)?;
-    if heed && query.is_outside(height) && query.verify()? {
+    let opposite = -direction;
+    let (other, height) = query.support(&opposite)?;
+    if heed && query.is_outside(&opposite, height) && query.verify()? {
         return Ok(None);
     }
     Ok(Some(if start.progress(direction, &other.point) > progress { other } else { vertex }))

@@ -78,7 +78,7 @@ fn follow<T: Real, const N: usize>(
         }
         let direction = plane * (T::one() / length);
         let (vertex, height) = query.support(&direction)?;
-        if query.is_outside(height) {
+        if query.is_outside(&direction, height) {
             return Ok(Shot::Stopped(Stop::Outside));
         }
         let offset = T::one() / length;

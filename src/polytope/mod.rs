@@ -15,7 +15,8 @@
 //! same points. A wrong decision can cost tightness, never topology, and the lower bound (module `bounds`) needs only
 //! the latter, and that no facet turned inside out on the way, which [`Polytope::is_sound`] tells.
 
-use crate::scalar::{Real, Vector, norm};
+use crate::bounds::Reach;
+use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
 
 mod heap;
@@ -118,9 +119,8 @@ pub struct Polytope<'a, T, const N: usize> {
     /// Every facet ever made had the centre certainly beneath it: the surface winds around the centre once (module
     /// `bounds`).
     sound: bool,
-    /// Largest |v|^2 over the vertices.
-    reach_squared: T,
-    reach: T,
+    /// What the vertices span.
+    reach: Reach<T, N>,
 }
 
 impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
@@ -139,8 +139,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             fresh: NONE,
             center: Vector::zeros(),
             sound: true,
-            reach_squared: T::zero(),
-            reach: T::zero(),
+            reach: Reach::none(),
         }
     }
 
@@ -162,8 +161,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.peak_vertices = 0;
         self.fresh = NONE;
         self.sound = true;
-        self.reach_squared = T::zero();
-        self.reach = T::zero();
+        self.reach = Reach::none();
     }
 
     /// Forgets everything but how much memory was used.
@@ -192,10 +190,14 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.len() >= 4 * N && self.vertices.len() >= 3 * N
     }
 
-    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
-    /// unit n and |v| <= reach, with room for the error of n itself.
+    /// Lengths below this cannot be told from zero in a plane equation.
     pub fn resolution(&self) -> T {
-        T::count(8 * N) * T::ROUNDOFF * self.reach
+        self.reach.resolution()
+    }
+
+    /// The same along n.
+    pub fn resolution_along(&self, n: &Vector<T, N>) -> T {
+        self.reach.resolution_along(n)
     }
 
     /// Does the surface certainly wind around every point that all facets are certainly above?
@@ -272,11 +274,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         let index = Index::try_from(self.vertex_count).ok().filter(|&i| i != NONE)?;
         *self.vertices.get_mut(self.vertex_count)? = vertex;
         self.vertex_count += 1;
-        let squared = vertex.point.dot(&vertex.point);
-        if squared > self.reach_squared {
-            self.reach_squared = squared;
-            self.reach = norm(&vertex.point);
-        }
+        self.reach.see(&vertex.point, vertex.point.dot(&vertex.point));
         Some(index)
     }
 

@@ -22,7 +22,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         }
         let normal = unit(&normal);
         let (lowest, highest) = self.heights(vertices, &normal)?;
-        let (normal, offset) = if highest - lowest <= self.resolution() {
+        let (normal, offset) = if highest - lowest <= self.resolution_along(&normal) {
             (normal, lowest)
         } else {
             let repaired = self.repair(vertices, &normal, N - 1)?;
@@ -36,7 +36,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
 
     /// Is the centre certainly beneath the facet with this plane? (Module `bounds`.)
     fn is_beneath(&self, normal: &Vector<T, N>, offset: T) -> bool {
-        offset - normal.dot(&self.center) > self.reach * (T::count(3 * N + 8) * T::ROUNDOFF)
+        let height = offset - normal.dot(&self.center);
+        let roundoffs = T::count(3 * N + 8) * T::ROUNDOFF;
+        height > roundoffs * self.reach.whole || height > roundoffs * self.reach.along(normal)
     }
 
     /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that

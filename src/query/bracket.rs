@@ -3,7 +3,8 @@
 use super::Query;
 use crate::answer::Stop;
 use crate::bounds::{Bracket, Tolerance};
-use crate::scalar::Real;
+use crate::polytope::Facet;
+use crate::scalar::{Real, Vector, norm};
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// The upper bound: proved by `direction`.
@@ -11,7 +12,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         if self.height >= T::HUGE {
             return T::HUGE; // nothing has been asked yet
         }
-        let margin = self.margin();
+        let margin = self.margin_along(&self.direction);
         match self.ball {
             Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
             None if self.apart => self.bounds.upper(self.height, margin, T::one(), T::zero()),
@@ -19,15 +20,43 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         }
     }
 
-    /// Lower bound from a point of A at this distance: d >= -distance, whether or not the origin is inside.
-    pub fn lower_from_distance(&self, distance: T) -> T {
-        self.bounds.lower_ball(-distance, self.margin(), self.per_ball)
+    /// Lower bound from a point x of A: d >= -|x|, whether or not the origin is inside. An error δ of x changes its norm by at most
+    /// δ.x / |x| + |δ|^2 / (2 |x|), and by |δ|.
+    pub fn lower_from_point(&self, point: &Vector<T, N>) -> T {
+        let (distance, whole) = (norm(point), self.margin());
+        // (The second term is not less than half of `whole` nearer by.)
+        let margin = if distance > whole {
+            let along = self.margin_along(&(point / distance));
+            (along + whole * (whole / (distance + distance)) * T::of(1.01)).at_most(whole)
+        } else {
+            whole
+        };
+        self.bounds.lower_ball(-distance, margin, self.per_ball)
     }
 
     /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is
     /// not certainly inside (module `bounds`). Heights are known up to `margin`.
     pub fn lower_from_offset(&self, offset: T, margin: T) -> Option<T> {
         (offset > margin).then(|| self.bounds.lower_ball(offset, margin, self.per_ball))
+    }
+
+    /// The same for any Q, with margins by direction: the least of (e - m(n)) / h over all facets.
+    pub fn lower_by_direction<'f>(&self, facets: impl Iterator<Item = &'f Facet<T, N>>) -> Option<T>
+    where
+        T: 'f,
+    {
+        let mut least = T::HUGE;
+        for facet in facets {
+            let margin = self.margin_along(&facet.normal);
+            if !(facet.offset > margin) {
+                return None;
+            }
+            least = least.at_most(match self.ball {
+                Some(_) => self.bounds.lower_ball(facet.offset, margin, self.per_ball),
+                None => (facet.key - facet.key * (margin / facet.offset)) * (T::one() - T::count(16) * T::ROUNDOFF),
+            });
+        }
+        (least < T::HUGE).then_some(least)
     }
 
     /// The same for any Q, from (offset, key) of all facets of a surface whose heights are known up to `margin`.

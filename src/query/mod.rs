@@ -2,7 +2,7 @@
 //! [`Answer`].
 
 use crate::answer::{Plan, Stop};
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, Reach};
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, finite};
 use crate::simplex::Vertex;
@@ -56,14 +56,14 @@ pub(crate) struct Query<'q, T, const N: usize> {
     gauge_error: T,
     /// What A says of its extent; 0: nothing.
     extent: T,
-    pub bounds: Bounds<T>,
+    pub bounds: Bounds<T, N>,
     /// Tolerance and threshold in scaled units.
     pub options: Options<T, N>,
     /// A power of two that brings the set to a size near 1, so that no product under- or overflows; 1 for sets that are
     /// near it already. All lengths of a query are scaled by it, the answer's are scaled back: both exactly.
     scale: T,
-    /// Largest norm of a point seen.
-    reach: T,
+    /// What has been seen of A.
+    reach: Reach<T, N>,
     /// The best upper bound: unit direction, support value, value of Q, and their quotient without margins.
     pub direction: Vector<T, N>,
     height: T,
@@ -107,9 +107,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         options: Options<T, N>,
     ) -> (Self, Result<(), Failure>) {
         let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
+        let support_errors = a.errors();
         let ball = q.ball_radius();
         let per_ball = T::one() / ball.unwrap_or(T::one());
-        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
+        let lengths = [radius, extent, support_error, gauge_error];
+        let sane = lengths.iter().chain(support_errors.iter()).all(|x| x.finite() && *x >= T::zero());
         let sane = sane && per_ball.finite() && per_ball > T::zero();
         let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
         let query = Query {
@@ -119,10 +121,10 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             per_ball,
             gauge_error,
             extent,
-            bounds: Bounds { support_error, radius, dimension: N, unknown_extent: !(extent > T::zero()) },
+            bounds: Bounds { support_error, support_errors, radius, unknown_extent: !(extent > T::zero()) },
             options,
             scale: T::one(),
-            reach: T::zero(),
+            reach: Reach::none(),
             direction: Vector::zeros(),
             height: T::HUGE,
             gauge: T::one(),
@@ -160,6 +162,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             let scale = T::one() / size.power_of_two();
             self.scale = scale;
             self.bounds.support_error *= scale;
+            self.bounds.support_errors *= scale;
             self.bounds.radius *= scale;
             self.options.absolute *= scale;
             self.options.threshold = self.options.threshold.map(|t| t * scale);
@@ -178,7 +181,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// The largest norm of a point seen, in the caller's units.
     pub fn true_reach(&self) -> T {
-        self.reach / self.scale
+        self.reach.whole / self.scale
     }
 
     /// Calls of A's support function so far.
@@ -239,9 +242,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
         }
-        if squared > self.reach * self.reach {
-            self.reach = squared.root();
-        }
+        self.reach.see(point, squared);
         Ok(())
     }
 
@@ -249,7 +250,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let top = height + self.bounds.radius;
         let (gauge, ratio) = if let Some(radius) = self.ball {
             (radius, top * self.per_ball)
-        } else if self.apart || self.is_outside(height) {
+        } else if self.apart || self.is_outside(direction, height) {
             // Outside, Q has no say: the distance counts.
             if !self.apart {
                 (self.apart, self.ratio) = (true, T::HUGE);
@@ -346,7 +347,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// A's size, as far as it is known.
     pub fn size(&self) -> T {
-        if self.extent > T::zero() { self.extent * self.scale } else { self.reach }
+        if self.extent > T::zero() { self.extent * self.scale } else { self.reach.whole }
     }
 
     /// Which changes of sign leave both A and Q as they are: bit s for the coordinates named by the bits of s.
@@ -357,7 +358,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Lengths below this cannot be told from zero in a plane equation.
     pub fn resolution(&self) -> T {
-        T::count(8 * N) * T::ROUNDOFF * self.reach
+        self.reach.resolution()
     }
 
     /// The key of a facet, eq. 24: no more than its true distance with respect to Q, up to the margin of the bracket.
@@ -402,16 +403,29 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Largest norm of a point of the core seen so far.
     pub fn reach(&self) -> T {
-        self.reach
+        self.reach.whole
     }
 
+    /// How far a height may be off, whatever the direction.
     pub fn margin(&self) -> T {
-        self.bounds.margin(self.reach)
+        self.bounds.margin(self.reach.whole)
+    }
+
+    /// The same along a unit vector.
+    pub fn margin_along(&self, direction: &Vector<T, N>) -> T {
+        self.bounds.margin_along(direction, &self.reach)
+    }
+
+    /// Do heights along the best direction depend on its small coordinates only, so that margins by direction say much more? (Bodies that
+    /// are long and flat along the coordinate axes: a floor.)
+    pub fn is_graded(&self) -> bool {
+        self.margin_along(&self.direction) * T::count(2) < self.margin()
     }
 
     /// Is the origin certainly outside the core, by this support value?
-    pub fn is_outside(&self, height: T) -> bool {
-        height + self.margin() < T::zero()
+    #[inline]
+    pub fn is_outside(&self, direction: &Vector<T, N>, height: T) -> bool {
+        height < T::zero() && height + self.margin_along(direction) < T::zero()
     }
 
     /// Has the caller set a limit?
