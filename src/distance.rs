@@ -25,11 +25,11 @@ const STEPS: usize = 128;
 
 /// Walks to the point nearest to the origin, starting with the support point along `first`. The distance is at most the norm
 /// of the current point, and at least minus any support value along a unit direction, which `support` gets to
-/// see. `watch` is told the point after every support call and ends the walk by returning `true`.
+/// see. `watch` is shown the simplex and its point after every support call, and ends the walk by returning `true`.
 pub fn nearest<T: Real, const N: usize>(
     first: &Vector<T, N>,
     mut support: impl FnMut(&Vector<T, N>) -> Result<Vertex<T, N>, Failure>,
-    mut watch: impl FnMut(&Vector<T, N>) -> bool,
+    mut watch: impl FnMut(&Simplex<T, N>, &Vector<T, N>) -> bool,
 ) -> Result<Nearest<T, N>, Failure> {
     let vertex = support(first)?;
     let mut reach = Reach::none();
@@ -49,7 +49,7 @@ pub fn nearest<T: Real, const N: usize>(
         let vertex = support(&direction)?;
         let height = direction.dot(&vertex.point);
         reach.see(&vertex.point, vertex.point.dot(&vertex.point));
-        if watch(&point) || height + distance <= reach.resolution_along(&direction) {
+        if watch(&simplex, &point) || height + distance <= reach.resolution_along(&direction) {
             break;
         }
         let before = simplex.clone();
@@ -81,7 +81,7 @@ pub struct Cloud<'a, T, const N: usize> {
 impl<T: Real, const N: usize> Cloud<'_, T, N> {
     /// The point of the hull nearest to `origin`.
     pub fn nearest(&self, first: &Vector<T, N>) -> Option<Nearest<T, N>> {
-        nearest(first, |u| self.farthest(u), |_| false).ok()
+        nearest(first, |u| self.farthest(u), |_, _| false).ok()
     }
 
     fn farthest(&self, u: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
@@ -136,5 +136,11 @@ impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
     }
     fn error(&self) -> T {
         self.0.error() + T::count(8 + N) * T::ROUNDOFF * self.0.radius()
+    }
+    fn errors(&self) -> Vector<T, N> {
+        self.0.errors().add_scalar(T::count(8 + N) * T::ROUNDOFF * self.0.radius())
+    }
+    fn extents(&self) -> Vector<T, N> {
+        if self.0.extent() > T::zero() { self.0.extents().add_scalar(self.0.radius()) } else { Vector::zeros() }
     }
 }

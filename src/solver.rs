@@ -146,7 +146,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let mut floor = None;
         if query.bounds.radius > T::zero() {
             let (stop, near) = self.approach(query, &first)?;
-            let bracket = Bracket { lower: query.lower_from_point(&near.simplex.point()), upper: query.upper() };
+            let bracket = Bracket { lower: query.lower_from_simplex(&near.simplex, &near.simplex.point()), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
                 return Ok(Opening { expanded: Err(stop), near: Some(near) });
             }
@@ -207,9 +207,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let near = nearest(
             first,
             |u| shared.try_borrow_mut().map_err(|_| Failure(crate::EMPTY))?.support(u).map(|(vertex, _)| vertex),
-            |point| {
+            |simplex, point| {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
-                let bracket = Bracket { lower: query.lower_from_point(point), upper: query.upper() };
+                let bracket = Bracket { lower: query.lower_from_simplex(simplex, point), upper: query.upper() };
                 let verdict = query.verdict(&bracket);
                 let end = verdict.or_else(|| query.exhausted());
                 stop = end.unwrap_or(stop);
@@ -252,7 +252,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 }
                 Ok((end, near)) => {
                     let stop = if stop == Stop::Flat && near.inside { stop } else { end };
-                    let lower = query.lower_from_point(&near.simplex.point());
+                    let lower = query.lower_from_simplex(&near.simplex, &near.simplex.point());
                     return self.report(query, stop, lower, near.simplex);
                 }
                 Err(failure) => return self.give_up(query, failure),
@@ -266,7 +266,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
         match self.nearest_stored(query, floor) {
             Some(near) => {
-                let lower = query.lower_from_point(&near.simplex.point());
+                let lower = query.lower_from_simplex(&near.simplex, &near.simplex.point());
                 self.report(query, stop, lower, near.simplex)
             }
             None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),

@@ -5,6 +5,7 @@ use crate::answer::Stop;
 use crate::bounds::{Bracket, Tolerance};
 use crate::polytope::Facet;
 use crate::scalar::{Real, Vector, norm};
+use crate::simplex::{Corner, Edges, Simplex};
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// The upper bound: proved by `direction`.
@@ -20,18 +21,47 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         }
     }
 
-    /// Lower bound from a point x of A: d >= -|x|, whether or not the origin is inside. An error δ of x changes its norm by at most
-    /// δ.x / |x| + |δ|^2 / (2 |x|), and by |δ|.
-    pub fn lower_from_point(&self, point: &Vector<T, N>) -> T {
+    /// Lower bound from a simplex in A and its point x: d >= -|x|, whether or not the origin is inside. An error δ of x changes its norm by at
+    /// most δ.x / |x| + |δ|^2 / (2 |x|), and by |δ|.
+    pub fn lower_from_simplex(&self, simplex: &Simplex<T, N>, point: &Vector<T, N>) -> T {
         let (distance, whole) = (norm(point), self.margin());
-        // (The second term is not less than half of `whole` nearer by.)
-        let margin = if distance > whole {
-            let along = self.margin_along(&(point / distance));
-            (along + whole * (whole / (distance + distance)) * T::of(1.01)).at_most(whole)
-        } else {
-            whole
-        };
-        self.bounds.lower_ball(-distance, margin, self.per_ball)
+        if !(distance > T::TINY) {
+            return self.bounds.lower_ball(-distance, whole, self.per_ball);
+        }
+        let towards = point / distance;
+        let along = self.margin_along(&towards);
+        let aside = whole * (whole / (distance + distance)) * T::of(1.01);
+        let lower = self.bounds.lower_ball(-distance, (along + aside).at_most(whole), self.per_ball);
+        if aside > along { lower.at_least(self.lower_from_crossing(simplex, point).unwrap_or(lower)) } else { lower }
+    }
+
+    /// The same for a simplex of N corners that certainly crosses the line through the origin and orthogonal to it: the crossing is a point of A,
+    /// no higher over the origin than the highest corner.
+    ///
+    /// Seen along the line the origin is w_i h_i inside of the side opposite corner i, with its weight and its height over that side, up to what the
+    /// weights' point is off. Where that is more than the corners are off, no side can have crossed the origin.
+    #[cold]
+    fn lower_from_crossing(&self, simplex: &Simplex<T, N>, point: &Vector<T, N>) -> Option<T> {
+        let line = simplex.towards_origin(norm(point), self.reach.whole);
+        let across = |v: &Vector<T, N>| v - line * line.dot(v);
+        let seen = |corner: &Corner<T, N>| across(&corner.vertex.point);
+        let safe = self.margin() * T::count(3) + norm(&across(point));
+        let mut highest = -T::HUGE;
+        for (i, corner) in simplex.corners.iter().enumerate() {
+            let mut others = simplex.corners.iter().enumerate().filter(|&(j, _)| j != i).map(|(_, other)| seen(other));
+            let base = others.next()?;
+            let mut side = Edges::<T, N>::new();
+            for other in others {
+                side.push(&(other - base), T::zero());
+            }
+            let over = norm(&side.complement(&side.complement(&(seen(corner) - base))));
+            if !(corner.weight * over > safe) {
+                return None;
+            }
+            highest = highest.at_least(-line.dot(&corner.vertex.point));
+        }
+        let lower = self.bounds.lower_ball(-highest, self.margin_along(&line), self.per_ball);
+        (simplex.corners.len() == N).then_some(lower)
     }
 
     /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is

@@ -106,6 +106,8 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
 pub struct Points<'a, T, const N: usize> {
     list: List<'a, T, N>,
     extent: T,
+    /// Largest |x_i|, or |x_i - first_i| where products are measured from the first point.
+    extents: Vector<T, N>,
     /// Largest distance from the first point, where that is what products are measured by.
     spread: Option<T>,
 }
@@ -127,7 +129,11 @@ impl<'a, T: Real, const N: usize> Points<'a, T, N> {
         let extent = if size > T::zero() { reach(Vector::zeros()) } else { T::zero() };
         let spread = if size > T::zero() { reach(Vector::from(*list.first)) } else { T::zero() };
         let spread = (spread * T::count(4) < extent).then_some(spread);
-        Ok(Self { list, extent, spread })
+        let base = if spread.is_some() { Vector::from(*list.first) } else { Vector::zeros() };
+        let extents = points.iter().fold(Vector::zeros(), |most: Vector<T, N>, p| {
+            most.zip_map(&(Vector::from(*p) - base), |m, x| m.at_least(x).at_least(-x))
+        });
+        Ok(Self { list, extent, extents: extents.map(|x| above(x, 0)), spread })
     }
 
     /// The points.
@@ -160,6 +166,13 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
             Some(spread) => T::count(2 * N + 4) * T::ROUNDOFF * spread,
             None => T::count(2 * N + 2) * T::ROUNDOFF * self.extent,
         }
+    }
+    fn errors(&self) -> Vector<T, N> {
+        self.extents * (T::count(if self.spread.is_some() { 2 * N + 4 } else { 2 * N + 2 }) * T::ROUNDOFF)
+    }
+    fn extents(&self) -> Vector<T, N> {
+        let first = if self.spread.is_some() { Vector::from(*self.list.first).abs() } else { Vector::zeros() };
+        self.extents + first
     }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         self.spread.map(|spread| (Vector::from(*self.list.first), spread))
@@ -212,6 +225,12 @@ impl<T: Real> Support<T, 3> for Hull<'_, T> {
     }
     fn error(&self) -> T {
         self.all.error()
+    }
+    fn errors(&self) -> Vector<T, 3> {
+        self.all.errors()
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        self.all.extents()
     }
     fn center(&self) -> Option<(Vector<T, 3>, T)> {
         self.all.center()

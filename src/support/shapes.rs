@@ -193,6 +193,9 @@ impl<T: Real, const N: usize> Support<T, N> for Point<T, N> {
     fn mirrored(&self, signs: u8) -> bool {
         (0..N).all(|i| signs >> i & 1 == 0 || self.at[i] == T::zero())
     }
+    fn extents(&self) -> Vector<T, N> {
+        self.at.map(magnitude)
+    }
     fn error(&self) -> T {
         T::zero()
     }
@@ -291,6 +294,9 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true
+    }
+    fn extents(&self) -> Vector<T, N> {
+        self.half
     }
     fn error(&self) -> T {
         T::zero()
@@ -393,6 +399,12 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true
+    }
+    fn extents(&self) -> Vector<T, N> {
+        self.semi
+    }
+    fn errors(&self) -> Vector<T, N> {
+        self.semi * (T::count(2 * N + 16) * T::ROUNDOFF)
     }
     fn error(&self) -> T {
         T::count(2 * N + 16) * T::ROUNDOFF * largest(&self.semi)

@@ -54,6 +54,13 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     fn mirrored(&self, _signs: u8) -> bool {
         true
     }
+    fn extents(&self) -> Vector<T, 3> {
+        Vector::from([self.radius, self.radius, self.half_height])
+    }
+    fn errors(&self) -> Vector<T, 3> {
+        let rim = T::count(8) * T::ROUNDOFF * self.radius;
+        Vector::from([rim, rim, T::zero()])
+    }
     fn error(&self) -> T {
         T::count(8) * T::ROUNDOFF * self.radius
     }
@@ -108,6 +115,9 @@ impl<T: Real> Support<T, 3> for Capsule<T> {
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        Vector::from([T::zero(), T::zero(), self.half_height])
     }
     fn error(&self) -> T {
         T::zero()
@@ -178,6 +188,12 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     }
     fn mirrored(&self, signs: u8) -> bool {
         signs & 4 == 0
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        Vector::from([self.radius, self.radius, self.half_height])
+    }
+    fn errors(&self) -> Vector<T, 3> {
+        self.extents() * (T::count(16) * T::ROUNDOFF)
     }
     fn error(&self) -> T {
         T::count(16) * T::ROUNDOFF * (self.radius + self.half_height)

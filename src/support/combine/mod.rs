@@ -62,6 +62,16 @@ fn pair_error<T: Real>(errors: T, extents: T) -> T {
     above(errors + T::ROUNDOFF * (extents + errors), 0)
 }
 
+/// The same coordinate by coordinate.
+fn pair_errors<T: Real, const N: usize>(errors: Vector<T, N>, extents: Vector<T, N>) -> Vector<T, N> {
+    errors.zip_map(&extents, pair_error)
+}
+
+/// The extents of a combination: `known` if all parts are known.
+fn all_if_known<T: Real, const N: usize>(parts: &[T], known: Vector<T, N>) -> Vector<T, N> {
+    if parts.iter().all(|&e| e > T::zero()) { known.map(|x| above(x, N)) } else { Vector::zeros() }
+}
+
 impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     #[inline]
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
@@ -100,5 +110,11 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     }
     fn error(&self) -> T {
         (**self).error()
+    }
+    fn errors(&self) -> Vector<T, N> {
+        (**self).errors()
+    }
+    fn extents(&self) -> Vector<T, N> {
+        (**self).extents()
     }
 }

@@ -77,6 +77,12 @@ impl<S, T: Real, const N: usize> Rigid<S, T, N> {
         if self.skewed { self.shape.rolling_radius() } else { T::zero() }
     }
 
+    /// |R| x: how far a box of half lengths x reaches along the axes, when it is turned.
+    fn spread(&self, x: &Vector<T, N>) -> Vector<T, N> {
+        let columns = self.rotation.data.0.iter().zip(x.iter());
+        columns.fold(Vector::zeros(), |sum, (column, &x)| sum + Vector::from(*column).abs() * x)
+    }
+
     #[inline]
     fn moved(&self, mut x: Vector<T, N>, local: &Vector<T, N>) -> Vector<T, N>
     where
@@ -120,6 +126,21 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
         let reach = if inner > T::zero() { inner } else { self.shift } + self.shift + self.inflation();
         let n = T::count(4 * N) * T::count(N).root() + T::count(N + 10);
         self.stretch * above(self.shape.error() + n * T::ROUNDOFF * reach, N)
+    }
+    /// As for `error`, with |R| x in the place of s |x|: R^T u has rounding error N u |R|^T |u|, which costs twice that times |R| E; R x + t
+    /// has (N + 1) u |R| E + u |t|.
+    fn errors(&self) -> Vector<T, N> {
+        if !(self.shape.extent() > T::zero()) || self.skewed {
+            return Vector::repeat(self.error());
+        }
+        let rounding = self.spread(&self.shape.extents()) * T::count(3 * N + 4) + self.translation.abs() * T::count(2);
+        (self.spread(&self.shape.errors()) + rounding * T::ROUNDOFF).map(|x| above(x, 2 * N))
+    }
+    fn extents(&self) -> Vector<T, N> {
+        if !(self.shape.extent() > T::zero()) || self.skewed {
+            return Vector::repeat(self.extent());
+        }
+        (self.spread(&self.shape.extents()) + self.translation.abs()).map(|x| above(x, N))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sets that are scaled, or grown by a margin.
 
-use super::pair_error;
+use super::{pair_error, pair_errors};
 use crate::scalar::{Real, Vector};
 use crate::support::shapes::{ShapeError, above, check_sizes};
 use crate::support::{Failure, Support, Symmetry};
@@ -60,6 +60,12 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
     }
     fn error(&self) -> T {
         self.factor * pair_error(self.shape.error(), self.shape.extent())
+    }
+    fn errors(&self) -> Vector<T, N> {
+        pair_errors(self.shape.errors(), self.shape.extents()) * self.factor
+    }
+    fn extents(&self) -> Vector<T, N> {
+        self.shape.extents().map(|x| above(x * self.factor, 0))
     }
 }
 
@@ -126,6 +132,12 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     }
     fn error(&self) -> T {
         self.shape.error()
+    }
+    fn errors(&self) -> Vector<T, N> {
+        self.shape.errors()
+    }
+    fn extents(&self) -> Vector<T, N> {
+        self.shape.extents()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Minkowski sums and differences.
 
-use super::{if_known, pair_error};
+use super::{all_if_known, if_known, pair_error, pair_errors};
 use crate::scalar::{Real, Vector};
 use crate::support::{Failure, Support};
 
@@ -59,6 +59,12 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     }
     fn error(&self) -> T {
         pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+    }
+    fn errors(&self) -> Vector<T, N> {
+        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
+    }
+    fn extents(&self) -> Vector<T, N> {
+        all_if_known(&[self.a.extent(), self.b.extent()], self.a.extents() + self.b.extents())
     }
 }
 
@@ -125,6 +131,12 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     }
     fn error(&self) -> T {
         pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+    }
+    fn errors(&self) -> Vector<T, N> {
+        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
+    }
+    fn extents(&self) -> Vector<T, N> {
+        all_if_known(&[self.a.extent(), self.b.extent()], self.a.extents() + self.b.extents())
     }
 }
 
