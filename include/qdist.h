@@ -403,6 +403,11 @@ typedef struct {
     // An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
     // to `center`. 0: measured from the origin.
     double spread;
+    // Upper bounds of |x|, |y| and |z| over the core, in the body's frame: a body that is long and flat along its axes, as a floor, is known better
+    // across. All zero: set.extent along every axis.
+    double extents[3];
+    // With `extents`: the rounding error set.error axis by axis; along a unit direction u it is the sum of |u_i| errors[i]. Zero is exact.
+    double errors[3];
     // Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
     // about one axis a plane problem.
     uint32_t symmetry;
@@ -1076,6 +1081,8 @@ typedef struct {
     float center[3];
     float rolling_radius;
     float spread;
+    float extents[3];
+    float errors[3];
     uint32_t symmetry;
 } qdist_body_f32;
 

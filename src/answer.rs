@@ -1,7 +1,7 @@
 //! What a query returns: an outcome, a bracket, and the evidence for both ends.
 
 use crate::qset::Gauge;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 use crate::simplex::Simplex;
 
 /// What a run concluded. Whatever it is, the bracket holds.
@@ -30,6 +30,13 @@ pub enum Outcome {
     Degenerate,
     /// A support or gauge function failed, or returned values that are not finite.
     SupportFailed,
+}
+
+impl Outcome {
+    /// Did rounding end the run?
+    pub(crate) fn is_open(self) -> bool {
+        matches!(self, Outcome::Precision | Outcome::Degenerate | Outcome::Touching | Outcome::Capacity)
+    }
 }
 
 /// How a query was answered: what it is decides (see [`Solver::solve`](crate::Solver::solve)).
@@ -97,6 +104,17 @@ impl<T: Real, const N: usize> Answer<T, N> {
     /// Is d >= `threshold`? `None` when the bracket does not tell.
     pub fn is_at_least(&self, threshold: T) -> Option<bool> {
         if self.lower >= threshold { Some(true) } else { (self.upper < threshold).then_some(false) }
+    }
+
+    /// Does the answer leave open what a more exact support function could tell?
+    pub(crate) fn is_open(&self) -> bool {
+        self.outcome.is_open()
+    }
+
+    /// The largest norm of a point of A in the answer.
+    pub(crate) fn reach(&self) -> T {
+        let corners = self.witness.corners.iter().map(|c| norm(&c.vertex.point));
+        corners.fold(norm(&self.support), |most, x| most.at_least(x))
     }
 
     /// The point of dQ that touches A's boundary, d s_Q(u) with the upper bound for d: of all that Q asks for, what A reaches last. For the

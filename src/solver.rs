@@ -10,7 +10,7 @@ use crate::qset::Gauge;
 use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
-use crate::support::{Failure, Support};
+use crate::support::{Failure, Measured, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or
 /// [`place`](crate::workspace::place).
@@ -69,6 +69,35 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         interrupt: Option<&dyn Fn() -> bool>,
         known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
     ) -> Answer<T, N> {
+        let answer = self.solve_as_stated(a, q, options, interrupt, known);
+        self.measured(answer, a, |solver, a| solver.solve_as_stated(a, q, options, interrupt, |_| Ok(None)))
+    }
+
+    /// The answer; where rounding left it open and A's stated extent is loose, that of the query with the extent as it was measured.
+    fn measured(
+        &mut self,
+        answer: Answer<T, N>,
+        a: &dyn Support<T, N>,
+        solve: impl FnOnce(&mut Self, &dyn Support<T, N>) -> Answer<T, N>,
+    ) -> Answer<T, N> {
+        if !answer.is_open() {
+            return answer;
+        }
+        let Some(measured) = Measured::new(a, answer.reach()) else { return answer };
+        let before = answer.support_calls.saturating_add(2 * N as u32);
+        let answer = solve(self, &measured);
+        Answer { support_calls: answer.support_calls.saturating_add(before), ..answer }
+    }
+
+    /// The query with what A says of itself.
+    fn solve_as_stated(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+        known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
+    ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_gauge(q);
@@ -115,9 +144,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
-        let inflated = Inflated(a);
-        let (set, radius) = inflated.for_gauge(q);
-        self.expand_only(Query::new(set, q, radius, *options))
+        let expand = |solver: &mut Self, a: &dyn Support<T, N>| {
+            let inflated = Inflated(a);
+            let (set, radius) = inflated.for_gauge(q);
+            solver.expand_only(Query::new(set, q, radius, *options))
+        };
+        let answer = expand(self, a);
+        self.measured(answer, a, expand)
     }
 
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {

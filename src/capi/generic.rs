@@ -149,11 +149,11 @@ pub fn reach<T: Real>(points: &[T], dimension: usize) -> T {
     size * most.root() * (T::one() + T::count(32) * T::ROUNDOFF)
 }
 
-/// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow.
+/// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow. (Two roundoffs of it are
+/// still normal: 1e-276, for `float` 3e-24.)
 #[inline(always)]
 pub fn tiny<T: Real>() -> T {
-    let squared = T::ROUNDOFF * T::ROUNDOFF;
-    squared * squared
+    T::SAFE_SQUARE
 }
 
 /// The direction, scaled if its products could leave the range of the format. `store` keeps the scaled one.

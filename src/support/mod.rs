@@ -29,6 +29,7 @@ mod load;
 mod shapes;
 mod solids;
 
+pub(crate) use combine::Measured;
 pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};

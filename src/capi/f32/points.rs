@@ -262,7 +262,8 @@ unsafe fn fill(
         error: all.error().at_least(tiny()),
         dimension: 3,
     };
-    let mut made = qdist_body_f32::at_origin(set);
+    let (extents, errors) = (all.extents().into(), all.errors().into());
+    let mut made = qdist_body_f32 { extents, errors, ..qdist_body_f32::at_origin(set) };
     if let Some((center, spread)) = center {
         made.center = center.into();
         made.spread = spread.at_least(tiny());

@@ -71,6 +71,11 @@ pub struct qdist_body_f32 {
     /// An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
     /// to `center`. 0: measured from the origin.
     pub spread: f32,
+    /// Upper bounds of |x|, |y| and |z| over the core, in the body's frame: a body that is long and flat along its axes, as a floor, is known better
+    /// across. All zero: set.extent along every axis.
+    pub extents: [f32; 3],
+    /// With `extents`: the rounding error set.error axis by axis; along a unit direction u it is the sum of |u_i| errors[i]. Zero is exact.
+    pub errors: [f32; 3],
     /// Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
     /// about one axis a plane problem.
     pub symmetry: u32,
@@ -143,8 +148,15 @@ impl qdist_body_f32 {
             center: [0.0; 3],
             rolling_radius: 0.0,
             spread: 0.0,
+            extents: [0.0; 3],
+            errors: [0.0; 3],
             symmetry: QDIST_SYMMETRY_NONE,
         }
+    }
+
+    /// Are extents and errors stated axis by axis?
+    fn states_axes(&self) -> bool {
+        self.extents.iter().any(|&x| x > 0.0)
     }
 
     /// Checks the numbers, except for the pose, which [`place`](Self::place) does.
@@ -156,6 +168,8 @@ impl qdist_body_f32 {
         // SAFETY: the caller's promise.
         unsafe { self.set.checked::<3>() }?;
         lengths([self.spread, self.rolling_radius])?;
+        lengths(self.extents)?;
+        lengths(self.errors)?;
         if self.spread > 0.0 {
             coordinates(&self.center)?;
         }
@@ -215,6 +229,12 @@ impl Support<f32, 3> for CheckedBody {
     }
     fn error(&self) -> f32 {
         self.0.set.stated_error(3)
+    }
+    fn errors(&self) -> Vector<f32, 3> {
+        if self.0.states_axes() { Vector::from(self.0.errors) } else { Vector::repeat(self.0.set.stated_error(3)) }
+    }
+    fn extents(&self) -> Vector<f32, 3> {
+        if self.0.states_axes() { Vector::from(self.0.extents) } else { Vector::repeat(self.0.set.extent) }
     }
 }
 

@@ -117,6 +117,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         _ => None,
     };
     let rolling_radius = set.rolling_radius();
+    let (extents, errors) = (set.extents().into(), set.errors().into());
     let set = qdist_set_f32 {
         support,
         exhaustive: None,
@@ -128,7 +129,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f32 { symmetry, rolling_radius, ..qdist_body_f32::at_origin(set) }) };
+    unsafe { body.write(qdist_body_f32 { symmetry, rolling_radius, extents, errors, ..qdist_body_f32::at_origin(set) }) };
     Ok(())
 }
 

@@ -116,6 +116,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         _ => None,
     };
     let rolling_radius = set.rolling_radius();
+    let (extents, errors) = (set.extents().into(), set.errors().into());
     let set = qdist_set_f64 {
         support,
         exhaustive: None,
@@ -127,7 +128,7 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f64 { symmetry, rolling_radius, ..qdist_body_f64::at_origin(set) }) };
+    unsafe { body.write(qdist_body_f64 { symmetry, rolling_radius, extents, errors, ..qdist_body_f64::at_origin(set) }) };
     Ok(())
 }
 

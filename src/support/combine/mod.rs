@@ -18,11 +18,13 @@ use crate::scalar::{Real, Vector};
 #[cfg(test)]
 mod dice;
 mod linear;
+mod measured;
 mod rigid;
 mod scaled;
 mod sums;
 
 pub use linear::Linear;
+pub(crate) use measured::Measured;
 pub use rigid::Rigid;
 pub use scaled::{Margin, Scaled};
 pub use sums::{Difference, Sum};

@@ -1,0 +1,74 @@
+//! A set whose stated extent is loose, with the one that its support function shows.
+//!
+//! The default [`error`](Support::error) of a set is a share of its stated extent. Where that bound is true but loose (a bound for a whole family of shapes,
+//! say), so is the error, and with it every margin. 2 N support calls along the axes draw a box around the core; the default error is then the
+//! same share of that box. An error that the set states by itself says something else, and stays.
+
+use crate::scalar::{Real, Vector, norm};
+use crate::support::{Failure, Support, Symmetry};
+
+/// A set, and the box around its core.
+pub(crate) struct Measured<'a, T, const N: usize> {
+    set: &'a dyn Support<T, N>,
+    extents: Vector<T, N>,
+}
+
+impl<'a, T: Real, const N: usize> Measured<'a, T, N> {
+    /// Measures a set whose points were seen no farther out than `reach`. `None` where that can gain nothing: the extent is not loose, not
+    /// stated, or the error does not hang on it.
+    pub fn new(set: &'a dyn Support<T, N>, reach: T) -> Option<Self> {
+        let stated = set.extent();
+        let by_default = set.error() == T::count(16 * N) * T::ROUNDOFF * stated && set.center().is_none();
+        if !(by_default && stated > reach + reach) {
+            return None;
+        }
+        let mut extents = Vector::<T, N>::zeros();
+        for i in 0..N {
+            for sign in [T::one(), -T::one()] {
+                let mut axis = Vector::<T, N>::zeros();
+                axis[i] = sign;
+                extents[i] = extents[i].at_least(set.exhaustive(&axis).ok()?[i].abs());
+            }
+        }
+        // What the support function may have missed along the axes.
+        let extents = extents * (T::one() + T::count(32 * N) * T::ROUNDOFF);
+        let size = norm(&extents);
+        (size > T::zero() && size + size < stated).then_some(Measured { set, extents })
+    }
+}
+
+impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.set.support(u)
+    }
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        self.set.support_with_witness(u)
+    }
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        self.set.exhaustive(u)
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.set.has_shortcuts()
+    }
+    fn radius(&self) -> T {
+        self.set.radius()
+    }
+    fn rolling_radius(&self) -> T {
+        self.set.rolling_radius()
+    }
+    fn extent(&self) -> T {
+        norm(&self.extents)
+    }
+    fn extents(&self) -> Vector<T, N> {
+        self.extents
+    }
+    fn symmetry(&self) -> Symmetry {
+        self.set.symmetry()
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.set.mirrored(signs)
+    }
+    fn errors(&self) -> Vector<T, N> {
+        self.extents * (T::count(16 * N) * T::ROUNDOFF)
+    }
+}
