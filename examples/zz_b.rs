@@ -1,4 +1,7 @@
-use qdist::{Body, Options, Vector, Workspace, support::{BoxShape, Sphere}};
+use qdist::{
+    Body, Options, Vector, Workspace,
+    support::{BoxShape, Sphere},
+};
 fn main() {
     let l = 100.0f32;
     let ground = BoxShape::new(Vector::from([l, l, 0.1])).unwrap();

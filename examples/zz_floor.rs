@@ -1,10 +1,25 @@
-use qdist::{Body, Options, Vector, Workspace, support::{BoxShape, Sphere, Cylinder, Support}};
+use qdist::{
+    Body, Options, Vector, Workspace,
+    support::{BoxShape, Cylinder, Sphere, Support},
+};
 fn run(name: &str, l: f32, a: &dyn Support<f32, 3>, b: &dyn Support<f32, 3>, at: [f32; 3]) {
     let mut memory = Workspace::<f32, 3, 256, 512>::new();
     for swap in [false, true] {
         let (x, y) = (Body::at(a, Vector::zeros()), Body::at(b, Vector::from(at)));
-        let d = if swap { memory.solver().depth(&y, &x, &Options::default()) } else { memory.solver().depth(&x, &y, &Options::default()) };
-        println!("{name} L={l} {swap}: {:?} [{:.6}, {:.6}] mm n {:?} it {} v {}", d.outcome, d.lower * 1e3, d.upper * 1e3, d.normal.as_slice(), d.iterations, d.vertices);
+        let d = if swap {
+            memory.solver().depth(&y, &x, &Options::default())
+        } else {
+            memory.solver().depth(&x, &y, &Options::default())
+        };
+        println!(
+            "{name} L={l} {swap}: {:?} [{:.6}, {:.6}] mm n {:?} it {} v {}",
+            d.outcome,
+            d.lower * 1e3,
+            d.upper * 1e3,
+            d.normal.as_slice(),
+            d.iterations,
+            d.vertices
+        );
     }
 }
 fn main() {

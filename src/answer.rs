@@ -106,9 +106,12 @@ impl<T: Real, const N: usize> Answer<T, N> {
         if self.lower >= threshold { Some(true) } else { (self.upper < threshold).then_some(false) }
     }
 
-    /// Does the answer leave open what a more exact support function could tell?
-    pub(crate) fn is_open(&self) -> bool {
-        self.outcome.is_open()
+    /// This answer of a second look, or the first one where that is narrower, with the work of both and `calls` more support calls.
+    pub(crate) fn or_wider(self, first: Self, calls: u32) -> Self {
+        let calls = self.support_calls.saturating_add(first.support_calls).saturating_add(calls);
+        let iterations = self.iterations.saturating_add(first.iterations);
+        let better = if self.upper - self.lower <= first.upper - first.lower { self } else { first };
+        Answer { support_calls: calls, iterations, ..better }
     }
 
     /// The largest norm of a point of A in the answer.

@@ -92,63 +92,24 @@ impl<T: Real> Tolerance<T> {
 
 /// Turns lengths measured on the core of A into bounds on d_Q(A).
 #[derive(Clone, Copy)]
-pub struct Bounds<T, const N: usize> {
+pub struct Bounds<T> {
     /// Error of the support function, e, in any direction.
     pub support_error: T,
-    /// The same coordinate by coordinate, e_i.
-    pub support_errors: Vector<T, N>,
     /// Ball term of A, r (Euclidean Q only).
     pub radius: T,
-    /// A's support function does not know its extent: its error is estimated from the points seen.
+    /// N, for the rounding of a dot product.
+    pub dimension: usize,
+    /// A's support function does not know its extent: its error is estimated from R.
     pub unknown_extent: bool,
 }
 
-/// What has been seen of A: R, the largest norm of a computed point, and R_i, the largest size of each coordinate.
+/// What is known of A along each coordinate axis, for margins by direction.
 #[derive(Clone, Copy)]
-pub struct Reach<T, const N: usize> {
-    /// R.
-    pub whole: T,
-    /// R_i.
-    pub each: Vector<T, N>,
-}
-
-impl<T: Real, const N: usize> Reach<T, N> {
-    /// Nothing has been seen.
-    pub fn none() -> Self {
-        Reach { whole: T::zero(), each: Vector::zeros() }
-    }
-
-    /// Takes in a point of this squared norm.
-    #[inline(always)]
-    pub fn see(&mut self, point: &Vector<T, N>, squared: T) {
-        if squared > self.whole * self.whole {
-            self.whole = squared.root();
-        }
-        for i in 0..N {
-            self.each[i] = self.each[i].at_least(point[i].abs());
-        }
-    }
-
-    /// Sum of |n_i| R_i: no product n.p is larger.
-    #[inline]
-    pub fn along(&self, n: &Vector<T, N>) -> T {
-        sum_along(n, &self.each)
-    }
-
-    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.p for a unit n, with room for the error of n itself.
-    #[inline]
-    pub fn resolution(&self) -> T {
-        T::count(8 * N) * T::ROUNDOFF * self.whole
-    }
-
-    /// The same along n, where that is much less: for what is long and flat along the coordinate axes. (Elsewhere one tolerance for all
-    /// directions breaks ties alike.)
-    #[inline]
-    pub fn resolution_along(&self, n: &Vector<T, N>) -> T {
-        let along = self.along(n);
-        let size = if along * T::count(8) < self.whole { along } else { self.whole };
-        T::count(8 * N) * T::ROUNDOFF * size
-    }
+pub struct Axes<T, const N: usize> {
+    /// Errors of the support function, e_i.
+    pub errors: Vector<T, N>,
+    /// Bounds of |x_i| over the points of A, R_i.
+    pub reach: Vector<T, N>,
 }
 
 /// Sum of |n_i| x_i.
@@ -157,24 +118,32 @@ fn sum_along<T: Real, const N: usize>(n: &Vector<T, N>, x: &Vector<T, N>) -> T {
     n.iter().zip(x.iter()).fold(T::zero(), |sum, (&n, &x)| sum + n.abs() * x)
 }
 
-impl<T: Real, const N: usize> Bounds<T, N> {
-    /// Roundoffs of R (or R_i) that a height may be off by.
-    fn roundoffs(&self) -> T {
-        T::count(if self.unknown_extent { 18 * N + 4 } else { 2 * N + 4 }) * T::ROUNDOFF
+impl<T: Real, const N: usize> Axes<T, N> {
+    /// m(n), for a unit vector n.
+    pub fn margin(&self, n: &Vector<T, N>) -> T {
+        let sum = sum_along(n, &self.errors) + T::count(2 * N + 4) * T::ROUNDOFF * sum_along(n, &self.reach);
+        sum + sum * (T::count(2 * N + 4) * T::ROUNDOFF) // The sum itself is rounded.
     }
 
-    /// m: how far a computed height n.p can be from the true one, whatever the direction.
+    /// Lengths below this cannot be told from zero in a plane equation with the unit normal n: the rounding error of n.p, with room for the
+    /// error of n itself.
+    pub fn resolution(&self, n: &Vector<T, N>) -> T {
+        T::count(8 * N) * T::ROUNDOFF * sum_along(n, &self.reach)
+    }
+
+    /// Is something known much better along one of the axes than `margin` says?
+    pub fn are_uneven(&self, margin: T) -> bool {
+        (0..N).any(|i| (self.errors[i] + T::count(2 * N + 4) * T::ROUNDOFF * self.reach[i]) * T::count(8) < margin)
+    }
+}
+
+impl<T: Real> Bounds<T> {
+    /// m: how far a computed height n.p can be from the true one, whatever the direction. `reach` is R.
     #[inline]
     pub fn margin(&self, reach: T) -> T {
-        self.support_error + self.roundoffs() * reach
-    }
-
-    /// m(n): the same along a unit vector.
-    #[inline]
-    pub fn margin_along(&self, n: &Vector<T, N>, reach: &Reach<T, N>) -> T {
-        let sum = sum_along(n, &self.support_errors) + self.roundoffs() * reach.along(n);
-        // The sum itself is rounded.
-        (sum + sum * (T::count(2 * N) * T::ROUNDOFF)).at_most(self.margin(reach.whole))
+        let n = self.dimension;
+        let operations = if self.unknown_extent { 18 * n + 4 } else { 2 * n + 4 };
+        self.support_error + T::count(operations) * T::ROUNDOFF * reach
     }
 
     /// A bound rounded away from the bracket, after a division by h_Q.

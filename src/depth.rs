@@ -13,11 +13,12 @@
 
 use crate::NOT_FINITE;
 use crate::answer::{Answer, Outcome};
+use crate::bounds::Axes;
 use crate::qset::Ball;
 use crate::query::{Options, Query};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
-use crate::support::{Failure, Support, Symmetry, one_by_one};
+use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
 use nalgebra::SMatrix;
 
 /// A 3 x 3 matrix.
@@ -82,26 +83,29 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
         Body { shape, rotation: SMatrix::identity(), translation, ball: shape.radius(), inflation: T::zero() }
     }
 
+    /// The same body, with its shape as it was measured.
+    fn remade<'m>(&'m self, measured: Option<&'m Measured<'m, T, N>>) -> Body<'m, T, N> {
+        let shape = measured.map_or(self.shape, |measured| measured);
+        Body { shape, ..*self }
+    }
+
     /// Where the body's support points are measured from, in its own frame, and an upper bound of the core's distance
     /// from there: the shape's own word, else half the diagonal of the box that support calls along the axes draw around it.
     fn anchor(&self) -> Result<Anchor<T, N>, Failure> {
         let mut anchor = self.core_anchor()?;
         let error = T::count(8) * T::ROUNDOFF * self.inflation;
         anchor.extent += self.inflation;
-        anchor.extents.add_scalar_mut(self.inflation);
         anchor.error += error;
-        anchor.errors.add_scalar_mut(error);
         Ok(anchor)
     }
 
     fn core_anchor(&self) -> Result<Anchor<T, N>, Failure> {
-        let (error, errors, extents) = (self.shape.error(), self.shape.errors(), self.shape.extents());
         if let Some((center, extent)) = self.shape.center() {
-            return Ok(Anchor { center: Some(center), extent, extents: Vector::repeat(extent), error, errors });
+            return Ok(Anchor { center: Some(center), extent, error: self.shape.error(), corner: None });
         }
-        let extent = self.shape.extent();
-        if extent > T::zero() {
-            return Ok(Anchor { center: None, extent, extents, error, errors });
+        let known = self.shape.extent();
+        if known > T::zero() {
+            return Ok(Anchor { center: None, extent: known, error: self.shape.error(), corner: None });
         }
         let mut corner = Vector::<T, N>::zeros();
         for i in 0..N {
@@ -115,11 +119,25 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
         }
         let extent = norm(&corner);
         // What `Support::error` would be, had the shape known its extent.
-        let rounding = T::count(16 * N) * T::ROUNDOFF;
-        let error = error.at_least(rounding * extent);
-        let errors = errors.zip_map(&corner, |e, x| e.at_least(rounding * x));
-        let anchor = Anchor { center: None, extent, extents: corner, error, errors };
+        let error = self.shape.error().at_least(T::count(16 * N) * T::ROUNDOFF * extent);
+        let anchor = Anchor { center: None, extent, error, corner: Some(corner) };
         if extent.finite() { Ok(anchor) } else { Err(Failure(NOT_FINITE)) }
+    }
+
+    /// Extents and errors along the axes of the world.
+    fn axes(&self, anchor: &Anchor<T, N>) -> Axes<T, N> {
+        let (mut extents, mut errors) = (self.shape.extents(), self.shape.errors());
+        if anchor.center.is_some() {
+            extents = Vector::repeat(anchor.extent);
+        }
+        if let Some(corner) = &anchor.corner {
+            // What `Support::errors` would be, had the shape known its extent.
+            let rounding = T::count(16 * N) * T::ROUNDOFF;
+            (extents, errors) = (*corner, errors.zip_map(corner, |e, x| e.at_least(rounding * x)));
+        }
+        let swollen = self.inflation * T::count(8) * T::ROUNDOFF;
+        let reach = spread(&self.rotation, &extents.add_scalar(self.inflation));
+        Axes { errors: spread(&self.rotation, &errors.add_scalar(swollen)), reach }
     }
 
     /// The support point relative to the placed anchor.
@@ -190,12 +208,11 @@ fn is_reflection<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
 /// Where a body is measured from: the origin of its frame, or a point near the shape when that is far away.
 struct Anchor<T: Real, const N: usize> {
     center: Option<Vector<T, N>>,
-    /// Upper bound of the core's distance, and of its distance along each axis of the body.
     extent: T,
-    extents: Vector<T, N>,
-    /// Error of the shape's support function, in any direction and along each axis of the body.
+    /// Error of the shape's support function.
     error: T,
-    errors: Vector<T, N>,
+    /// For a shape of unknown extent: the box that was measured.
+    corner: Option<Vector<T, N>>,
 }
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
@@ -209,9 +226,8 @@ struct Pair<'p, 'a, T: Real, const N: usize> {
     offset: Vector<T, N>,
     extent: T,
     error: T,
-    /// The same along each axis of the world.
-    extents: Vector<T, N>,
-    errors: Vector<T, N>,
+    /// What the offset's own rounding and the axis that is used for both bodies add to it.
+    extra: T,
 }
 
 impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
@@ -233,14 +249,30 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
         let rounding = (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF;
         let error = (on_a.error + on_b.error + rounding) * T::of(1.01) + left;
-        // Along each axis of the world, with E_i = (|R| E)_i in the place of E: the local direction is off by 3 u (|R^T| |u|)_j, which costs that times
-        // 2 E_j, 6 u sum of |u_i| (|R| E)_i together; the product with the rotation 3 u; the rest as above.
-        let spans = spread(&a.rotation, &on_a.extents) + spread(&b.rotation, &on_b.extents);
-        let own = spread(&a.rotation, &on_a.errors) + spread(&b.rotation, &on_b.errors);
-        let offsets = offset.abs();
-        let errors = (own + (spans * T::count(13) + offsets * T::count(4)) * T::ROUNDOFF) * T::of(1.01);
-        let (extents, errors) = (spans * T::of(1.01) + offsets, errors.add_scalar(left));
-        Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error, extents, errors })
+        Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error, extra: left })
+    }
+
+    /// Extents and errors along each axis of the world, with E_i = (|R| E)_i in the place of E: the local direction is off by 3 u (|R|^T |u|)_j, which
+    /// costs that times 2 E_j, 6 u sum of |u_i| E_i together; the anchor's subtraction u, the product with the rotation 3 u, and the rest as in `new`.
+    fn axes(&self) -> Axes<T, N> {
+        let (a, b) = (self.a.axes(&self.on_a), self.b.axes(&self.on_b));
+        let (spans, offsets) = (a.reach + b.reach, self.offset.abs());
+        let rounding = (spans * T::count(13) + offsets * T::count(4)) * T::ROUNDOFF;
+        let errors = ((a.errors + b.errors + rounding) * T::of(1.01)).add_scalar(self.extra);
+        Axes { errors, reach: spans * T::of(1.01) + offsets }
+    }
+
+    /// The query for the depth.
+    fn query<'q>(
+        &'q self,
+        ball: &'q Ball<T>,
+        options: &Options<T, N>,
+        interrupt: Option<&'q dyn Fn() -> bool>,
+    ) -> (Query<'q, T, N>, Result<(), Failure>) {
+        let (mut query, checked) = Query::new(self, ball, self.radius(), *options);
+        query.seeks_rivals = false;
+        query.interrupt = interrupt;
+        (query, checked)
     }
 
     fn sample(&self, u: &Vector<T, N>, exhaustive: bool) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
@@ -304,7 +336,7 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         // those of measuring it.
         let deviation = (aside + stretched + T::count(4) * T::ROUNDOFF) * T::count(2) * self.extent;
         self.error += deviation;
-        self.errors.add_scalar_mut(deviation);
+        self.extra += deviation;
         Some(first * (T::one() / norm(&first)))
     }
 }
@@ -332,10 +364,10 @@ impl<T: Real, const N: usize> Support<T, N> for Pair<'_, '_, T, N> {
         self.error
     }
     fn extents(&self) -> Vector<T, N> {
-        self.extents
+        self.axes().reach
     }
     fn errors(&self) -> Vector<T, N> {
-        self.errors
+        self.axes().errors
     }
 }
 
@@ -440,11 +472,17 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let (mut query, checked) = Query::new(pair, &ball, pair.radius(), options);
-        query.seeks_rivals = false;
-        query.interrupt = interrupt;
-        let answer = self.expand_only((query, checked));
-        Depth::new(&answer, pair)
+        let answer = self.expand_only(pair.query(&ball, &options, interrupt));
+        if !answer.outcome.is_open() {
+            return Depth::new(&answer, pair);
+        }
+        // A second look (module `second_look`); here each body is measured by itself.
+        let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
+        let measured = a.is_some() || b.is_some();
+        let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
+        let Ok(sharper) = Pair::new(&a, &b) else { return Depth::new(&answer, pair) };
+        let second = self.expand_sharper(sharper.query(&ball, &options, interrupt), measured);
+        Depth::new(&second.map_or(answer.clone(), |second| second.or_wider(answer, 0)), pair)
     }
 }
 

@@ -4,7 +4,7 @@
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
 
-use crate::bounds::Reach;
+use crate::bounds::Axes;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
@@ -25,46 +25,48 @@ const STEPS: usize = 128;
 
 /// Walks to the point nearest to the origin, starting with the support point along `first`. The distance is at most the norm
 /// of the current point, and at least minus any support value along a unit direction, which `support` gets to
-/// see. `watch` is shown the simplex and its point after every support call, and ends the walk by returning `true`.
+/// see. `watch` is shown the simplex and told the norm of its point after every support call, and ends the walk by returning `true`. With `axes`
+/// lengths are told from zero by direction.
 pub fn nearest<T: Real, const N: usize>(
     first: &Vector<T, N>,
+    axes: Option<&Axes<T, N>>,
     mut support: impl FnMut(&Vector<T, N>) -> Result<Vertex<T, N>, Failure>,
-    mut watch: impl FnMut(&Simplex<T, N>, &Vector<T, N>) -> bool,
+    mut watch: impl FnMut(&Simplex<T, N>, T) -> bool,
 ) -> Result<Nearest<T, N>, Failure> {
     let vertex = support(first)?;
-    let mut reach = Reach::none();
-    reach.see(&vertex.point, vertex.point.dot(&vertex.point));
+    let mut reach = norm(&vertex.point);
     let mut simplex = Simplex::new(vertex);
-    let mut point = vertex.point;
-    let mut distance = norm(&point);
+    let mut distance = reach;
     let mut inside = false;
     for _ in 0..STEPS {
-        let far = distance > reach.resolution();
-        let far = far || (distance > T::TINY && distance > reach.resolution_along(&(point / distance)));
-        if !far || simplex.corners.len() > N {
+        let resolution = T::count(8 * N) * T::ROUNDOFF * reach;
+        let least = axes.map_or(resolution, |axes| {
+            let towards = simplex.towards_origin(distance.at_least(T::TINY), reach);
+            axes.resolution(&towards).at_most(resolution)
+        });
+        if !(distance > least) || simplex.corners.len() > N {
             inside = true;
             break;
         }
-        let direction = simplex.towards_origin(distance, reach.whole);
+        let direction = simplex.towards_origin(distance, reach);
         let vertex = support(&direction)?;
         let height = direction.dot(&vertex.point);
-        reach.see(&vertex.point, vertex.point.dot(&vertex.point));
-        if watch(&simplex, &point) || height + distance <= reach.resolution_along(&direction) {
+        reach = reach.at_least(norm(&vertex.point));
+        if watch(&simplex, distance) || height + distance <= least {
             break;
         }
         let before = simplex.clone();
         if !simplex.push(vertex) {
             break;
         }
-        let solved = simplex.minimize(reach.resolution());
-        let next = simplex.point();
-        let now = norm(&next);
+        let solved = simplex.minimize(resolution);
+        let now = norm(&simplex.point());
         if now >= distance {
             // Rounding has the last word: keep the better point.
             simplex = before;
             break;
         }
-        (point, distance) = (next, now);
+        distance = now;
         if !solved {
             break;
         }
@@ -81,7 +83,7 @@ pub struct Cloud<'a, T, const N: usize> {
 impl<T: Real, const N: usize> Cloud<'_, T, N> {
     /// The point of the hull nearest to `origin`.
     pub fn nearest(&self, first: &Vector<T, N>) -> Option<Nearest<T, N>> {
-        nearest(first, |u| self.farthest(u), |_, _| false).ok()
+        nearest(first, None, |u| self.farthest(u), |_, _| false).ok()
     }
 
     fn farthest(&self, u: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {

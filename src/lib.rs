@@ -115,6 +115,7 @@ pub mod prepare;
 pub mod qset;
 mod query;
 pub mod scalar;
+mod second_look;
 pub mod simplex;
 pub mod solver;
 mod span;

@@ -10,7 +10,7 @@ use crate::qset::Gauge;
 use crate::query::{Options, Query};
 use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
-use crate::support::{Failure, Measured, Support};
+use crate::support::{Failure, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or
 /// [`place`](crate::workspace::place).
@@ -69,45 +69,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         interrupt: Option<&dyn Fn() -> bool>,
         known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
     ) -> Answer<T, N> {
-        let answer = self.solve_as_stated(a, q, options, interrupt, known);
-        self.measured(answer, a, |solver, a| solver.solve_as_stated(a, q, options, interrupt, |_| Ok(None)))
-    }
-
-    /// The answer; where rounding left it open and A's stated extent is loose, that of the query with the extent as it was measured.
-    fn measured(
-        &mut self,
-        answer: Answer<T, N>,
-        a: &dyn Support<T, N>,
-        solve: impl FnOnce(&mut Self, &dyn Support<T, N>) -> Answer<T, N>,
-    ) -> Answer<T, N> {
-        if !answer.is_open() {
-            return answer;
-        }
-        let Some(measured) = Measured::new(a, answer.reach()) else { return answer };
-        let before = answer.support_calls.saturating_add(2 * N as u32);
-        let answer = solve(self, &measured);
-        Answer { support_calls: answer.support_calls.saturating_add(before), ..answer }
-    }
-
-    /// The query with what A says of itself.
-    fn solve_as_stated(
-        &mut self,
-        a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
-        known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
-    ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_gauge(q);
         let (mut query, checked) = Query::new(set, q, radius, *options);
         query.interrupt = interrupt;
-        match checked.and_then(|()| query.normalize()).and_then(|()| known(&mut query)) {
-            Ok(Some(answer)) => answer,
+        let answer = match checked.and_then(|()| query.normalize()).and_then(|()| known(&mut query)) {
+            Ok(Some(answer)) => return answer,
             Ok(None) => self.decide(&mut query),
-            Err(failure) => self.give_up(&mut query, failure),
-        }
+            Err(failure) => return self.give_up(&mut query, failure),
+        };
+        self.look_again(answer, set, |solver, set, measured| {
+            let (mut query, checked) = Query::new(set, q, radius, *options);
+            query.interrupt = interrupt;
+            solver.polytope.reset();
+            solver.sharpen(&mut query, checked, measured).then(|| solver.decide(&mut query))
+        })
     }
 
     /// The plan for a query that has been made ready.
@@ -144,20 +121,35 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         q: &dyn Gauge<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
-        let expand = |solver: &mut Self, a: &dyn Support<T, N>| {
-            let inflated = Inflated(a);
-            let (set, radius) = inflated.for_gauge(q);
-            solver.expand_only(Query::new(set, q, radius, *options))
-        };
-        let answer = expand(self, a);
-        self.measured(answer, a, expand)
+        let inflated = Inflated(a);
+        let (set, radius) = inflated.for_gauge(q);
+        let answer = self.expand_only(Query::new(set, q, radius, *options));
+        self.look_again(answer, set, |solver, set, measured| {
+            solver.expand_sharper(Query::new(set, q, radius, *options), measured)
+        })
     }
 
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
-        self.polytope.reset();
-        match checked.and_then(|()| query.normalize()).and_then(|()| self.open(&mut query)) {
-            Ok(opening) => self.close(&mut query, opening),
+        match checked.and_then(|()| query.normalize()) {
+            Ok(()) => self.expand_ready(&mut query),
             Err(failure) => self.give_up(&mut query, failure),
+        }
+    }
+
+    /// The same as a second look; `None` when that would show nothing new.
+    pub(crate) fn expand_sharper(
+        &mut self,
+        (mut query, checked): (Query<'_, T, N>, Result<(), Failure>),
+        measured: bool,
+    ) -> Option<Answer<T, N>> {
+        self.sharpen(&mut query, checked, measured).then(|| self.expand_ready(&mut query))
+    }
+
+    fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
+        self.polytope.reset();
+        match self.open(query) {
+            Ok(opening) => self.close(query, opening),
+            Err(failure) => self.give_up(query, failure),
         }
     }
 
@@ -179,7 +171,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let mut floor = None;
         if query.bounds.radius > T::zero() {
             let (stop, near) = self.approach(query, &first)?;
-            let bracket = Bracket { lower: query.lower_from_simplex(&near.simplex, &near.simplex.point()), upper: query.upper() };
+            let bracket =
+                Bracket { lower: query.lower_from_simplex(&near.simplex, near.distance), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
                 return Ok(Opening { expanded: Err(stop), near: Some(near) });
             }
@@ -236,13 +229,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         first: &Vector<T, N>,
     ) -> Result<(Stop, Nearest<T, N>), Failure> {
         let mut stop = Stop::Rounding;
+        let axes = query.axes;
         let shared = core::cell::RefCell::new(query);
         let near = nearest(
             first,
+            axes.as_ref(),
             |u| shared.try_borrow_mut().map_err(|_| Failure(crate::EMPTY))?.support(u).map(|(vertex, _)| vertex),
-            |simplex, point| {
+            |simplex, distance| {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
-                let bracket = Bracket { lower: query.lower_from_simplex(simplex, point), upper: query.upper() };
+                let bracket = Bracket { lower: query.lower_from_simplex(simplex, distance), upper: query.upper() };
                 let verdict = query.verdict(&bracket);
                 let end = verdict.or_else(|| query.exhausted());
                 stop = end.unwrap_or(stop);
@@ -285,7 +280,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 }
                 Ok((end, near)) => {
                     let stop = if stop == Stop::Flat && near.inside { stop } else { end };
-                    let lower = query.lower_from_simplex(&near.simplex, &near.simplex.point());
+                    let lower = query.lower_from_simplex(&near.simplex, near.distance);
                     return self.report(query, stop, lower, near.simplex);
                 }
                 Err(failure) => return self.give_up(query, failure),
@@ -299,7 +294,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
         match self.nearest_stored(query, floor) {
             Some(near) => {
-                let lower = query.lower_from_simplex(&near.simplex, &near.simplex.point());
+                let lower = query.lower_from_simplex(&near.simplex, near.distance);
                 self.report(query, stop, lower, near.simplex)
             }
             None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),

@@ -14,7 +14,7 @@ use crate::bounds::Bracket;
 use crate::plan::expansion::sample;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, unit};
+use crate::scalar::{Real, Vector, norm, unit};
 use crate::simplex::{Corner, Simplex, Vertex};
 use crate::solver::Solver;
 use crate::start::Start;
@@ -292,7 +292,7 @@ fn solve_line<T: Real, const N: usize>(
     let inside = query.lower_from_facets([first, second].into_iter(), query.margin());
     ends.minimize(query.resolution());
     // An end at the origin, as far as rounding can tell. What is farther out has a distance that is no business of the line's.
-    let at_end = || (query.upper() >= T::zero()).then(|| query.lower_from_simplex(&ends, &ends.point()));
+    let at_end = || (query.upper() >= T::zero()).then(|| query.lower_from_simplex(&ends, norm(&ends.point())));
     let lower = inside.or_else(at_end)?;
     let stop = query.verdict(&Bracket { lower, upper: query.upper() });
     let answer = query.answer(stop.unwrap_or(Stop::Rounding), lower, ends);

@@ -60,7 +60,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 }
                 return end(stop);
             }
-            match self.insert(index, vertex, T::zero()) {
+            match self.insert(index, vertex, self.resolution()) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 Some(Insertion::Full) => return end(Stop::Capacity),
                 Some(Insertion::Rejected) | None => return end(Stop::Rounding),
@@ -98,7 +98,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The lower bound that the polytope proves when its lowest key is this; `None` when the origin is not certainly
     /// inside.
     pub(crate) fn lower(&self, query: &Query<'_, T, N>, key: T) -> Option<T> {
-        if self.is_sound() && query.is_graded() {
+        if self.is_sound() && query.axes.is_some() {
             return query.lower_by_direction(self.facets());
         }
         self.lower_up_to(query, key, query.margin())
@@ -135,6 +135,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Lines 1 to 3: the first simplex. A stop instead when A is flat, or when it certainly does not contain the
     /// origin.
     pub(crate) fn start(&mut self, query: &mut Query<'_, T, N>, first: &Vector<T, N>) -> Result<Option<Stop>, Failure> {
+        self.axes = query.axes;
         let mut start = Start::new(*first);
         while start.missing() > 0 {
             let direction = start.direction();
@@ -178,7 +179,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             if height - offset <= tolerance + tolerance {
                 return Ok(());
             }
-            match self.insert(index, vertex, T::zero()) {
+            match self.insert(index, vertex, self.resolution()) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
                 _ => return Ok(()),
             }

@@ -1,8 +1,7 @@
 //! Propositions 3 and 4: which facets a new point eliminates, and which it makes.
 
 use super::{Facet, Index, NONE, Polytope, State};
-use crate::bounds::Reach;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, Vector, norm};
 use crate::simplex::Vertex;
 
 /// What became of an insertion.
@@ -24,8 +23,8 @@ struct Visible {
 }
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
-    /// Adds a point that facet `from` sees. A facet is visible when the point is above its plane by more than the resolution there, and by more than
-    /// `tolerance`; ties count as not visible, which drops nothing but rounding.
+    /// Adds a point that facet `from` sees. A facet is visible when the point is more than `tolerance` above
+    /// its plane; ties count as not visible, which drops nothing but rounding. (With resolutions by direction they are the tolerance.)
     ///
     /// `None` means that the bookkeeping contradicts itself (it never happened): the surface proves nothing any more, and
     /// the caller must stop.
@@ -35,14 +34,15 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         inserted
     }
 
-    fn try_insert(&mut self, from: Index, vertex: Vertex<T, N>, tolerance: T) -> Option<Insertion> {
+    fn try_insert(&mut self, from: Index, vertex: Vertex<T, N>, mut tolerance: T) -> Option<Insertion> {
         if self.vertex_count >= self.vertices.len() {
             return Some(Insertion::Full);
         }
         // Heights of a point farther out than all others are rounded more coarsely.
-        let mut reach = self.reach;
-        reach.see(&vertex.point, vertex.point.dot(&vertex.point));
-        let visible = self.mark_visible(from, &vertex.point, tolerance, &reach)?;
+        if vertex.point.dot(&vertex.point) > self.reach_squared {
+            tolerance = tolerance.at_least(T::count(8 * N) * T::ROUNDOFF * norm(&vertex.point));
+        }
+        let visible = self.mark_visible(from, &vertex.point, tolerance)?;
         if visible.horizon > self.free_slots() || visible.count == self.live {
             self.unmark(visible.head)?;
             return Some(if visible.count == self.live { Insertion::Rejected } else { Insertion::Full });
@@ -56,17 +56,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// Proposition 3 by walking: breadth first over neighbours, starting at a facet known to be visible.
-    fn mark_visible(
-        &mut self,
-        from: Index,
-        point: &Vector<T, N>,
-        tolerance: T,
-        reach: &Reach<T, N>,
-    ) -> Option<Visible> {
-        let coarse = tolerance.at_least(reach.resolution());
+    fn mark_visible(&mut self, from: Index, point: &Vector<T, N>, tolerance: T) -> Option<Visible> {
+        let axes = self.axes;
         let sees = |f: &Facet<T, N>| {
             let height = f.normal.dot(point) - f.offset;
-            height > coarse || (height > tolerance && height > reach.resolution_along(&f.normal))
+            height > tolerance || axes.as_ref().is_some_and(|axes| height > axes.resolution(&f.normal))
         };
         let first = self.facet_mut(from)?;
         first.state = State::Visible;

@@ -15,8 +15,8 @@
 //! same points. A wrong decision can cost tightness, never topology, and the lower bound (module `bounds`) needs only
 //! the latter, and that no facet turned inside out on the way, which [`Polytope::is_sound`] tells.
 
-use crate::bounds::Reach;
-use crate::scalar::{Real, Vector};
+use crate::bounds::Axes;
+use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
 
 mod heap;
@@ -119,8 +119,11 @@ pub struct Polytope<'a, T, const N: usize> {
     /// Every facet ever made had the centre certainly beneath it: the surface winds around the centre once (module
     /// `bounds`).
     sound: bool,
-    /// What the vertices span.
-    reach: Reach<T, N>,
+    /// Largest |v|^2 over the vertices.
+    reach_squared: T,
+    reach: T,
+    /// Resolutions by direction, where they are asked for.
+    pub axes: Option<Axes<T, N>>,
 }
 
 impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
@@ -139,7 +142,9 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             fresh: NONE,
             center: Vector::zeros(),
             sound: true,
-            reach: Reach::none(),
+            reach_squared: T::zero(),
+            reach: T::zero(),
+            axes: None,
         }
     }
 
@@ -161,7 +166,9 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.peak_vertices = 0;
         self.fresh = NONE;
         self.sound = true;
-        self.reach = Reach::none();
+        self.reach_squared = T::zero();
+        self.reach = T::zero();
+        self.axes = None;
     }
 
     /// Forgets everything but how much memory was used.
@@ -190,14 +197,16 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.len() >= 4 * N && self.vertices.len() >= 3 * N
     }
 
-    /// Lengths below this cannot be told from zero in a plane equation.
+    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
+    /// unit n and |v| <= reach, with room for the error of n itself.
     pub fn resolution(&self) -> T {
-        self.reach.resolution()
+        T::count(8 * N) * T::ROUNDOFF * self.reach
     }
 
     /// The same along n.
     pub fn resolution_along(&self, n: &Vector<T, N>) -> T {
-        self.reach.resolution_along(n)
+        let whole = self.resolution();
+        self.axes.as_ref().map_or(whole, |axes| axes.resolution(n).at_most(whole))
     }
 
     /// Does the surface certainly wind around every point that all facets are certainly above?
@@ -274,7 +283,11 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         let index = Index::try_from(self.vertex_count).ok().filter(|&i| i != NONE)?;
         *self.vertices.get_mut(self.vertex_count)? = vertex;
         self.vertex_count += 1;
-        self.reach.see(&vertex.point, vertex.point.dot(&vertex.point));
+        let squared = vertex.point.dot(&vertex.point);
+        if squared > self.reach_squared {
+            self.reach_squared = squared;
+            self.reach = norm(&vertex.point);
+        }
         Some(index)
     }
 

@@ -38,7 +38,8 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     fn is_beneath(&self, normal: &Vector<T, N>, offset: T) -> bool {
         let height = offset - normal.dot(&self.center);
         let roundoffs = T::count(3 * N + 8) * T::ROUNDOFF;
-        height > roundoffs * self.reach.whole || height > roundoffs * self.reach.along(normal)
+        // (A resolution by direction is 8 N roundoffs; what is needed is less.)
+        height > roundoffs * self.reach || self.axes.as_ref().is_some_and(|axes| height > axes.resolution(normal))
     }
 
     /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that

@@ -2,7 +2,7 @@
 
 use super::Query;
 use crate::answer::Stop;
-use crate::bounds::{Bracket, Tolerance};
+use crate::bounds::{Axes, Bracket, Tolerance};
 use crate::polytope::Facet;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Corner, Edges, Simplex};
@@ -21,32 +21,39 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         }
     }
 
-    /// Lower bound from a simplex in A and its point x: d >= -|x|, whether or not the origin is inside. An error δ of x changes its norm by at
-    /// most δ.x / |x| + |δ|^2 / (2 |x|), and by |δ|.
-    pub fn lower_from_simplex(&self, simplex: &Simplex<T, N>, point: &Vector<T, N>) -> T {
-        let (distance, whole) = (norm(point), self.margin());
-        if !(distance > T::TINY) {
-            return self.bounds.lower_ball(-distance, whole, self.per_ball);
-        }
-        let towards = point / distance;
-        let along = self.margin_along(&towards);
-        let aside = whole * (whole / (distance + distance)) * T::of(1.01);
-        let lower = self.bounds.lower_ball(-distance, (along + aside).at_most(whole), self.per_ball);
-        if aside > along { lower.at_least(self.lower_from_crossing(simplex, point).unwrap_or(lower)) } else { lower }
+    /// Lower bound from a simplex in A whose point has this distance from the origin: d >= -distance, whether or not the origin is inside.
+    pub fn lower_from_simplex(&self, simplex: &Simplex<T, N>, distance: T) -> T {
+        let lower = self.bounds.lower_ball(-distance, self.margin(), self.per_ball);
+        let Some(axes) = &self.axes else { return lower };
+        lower.at_least(self.lower_by_axes(axes, simplex, distance))
     }
 
-    /// The same for a simplex of N corners that certainly crosses the line through the origin and orthogonal to it: the crossing is a point of A,
-    /// no higher over the origin than the highest corner.
+    /// The same with margins by direction.
+    #[cold]
+    fn lower_by_axes(&self, axes: &Axes<T, N>, simplex: &Simplex<T, N>, distance: T) -> T {
+        let line = if distance > T::TINY { simplex.towards_origin(distance, self.reach) } else { self.direction };
+        let crossing = self.highest_crossing(simplex, &line);
+        let crossing =
+            crossing.map_or(-T::HUGE, |height| self.bounds.lower_ball(-height, axes.margin(&line), self.per_ball));
+        // An error δ of x changes its norm by at most δ.x / |x| + |δ|^2 / (2 |x|).
+        let (point, whole) = (simplex.point(), self.margin());
+        if !(distance > whole) {
+            return crossing;
+        }
+        let margin = axes.margin(&(point / distance)) + whole * (whole / (distance + distance)) * T::of(1.01);
+        crossing.at_least(self.bounds.lower_ball(-distance, margin, self.per_ball))
+    }
+
+    /// For a simplex of N corners that certainly crosses the line through the origin in this unit direction: the crossing is a point of A,
+    /// no farther from the origin than the corner that is highest along the line, up or down.
     ///
     /// Seen along the line the origin is w_i h_i inside of the side opposite corner i, with its weight and its height over that side, up to what the
     /// weights' point is off. Where that is more than the corners are off, no side can have crossed the origin.
-    #[cold]
-    fn lower_from_crossing(&self, simplex: &Simplex<T, N>, point: &Vector<T, N>) -> Option<T> {
-        let line = simplex.towards_origin(norm(point), self.reach.whole);
+    fn highest_crossing(&self, simplex: &Simplex<T, N>, line: &Vector<T, N>) -> Option<T> {
         let across = |v: &Vector<T, N>| v - line * line.dot(v);
         let seen = |corner: &Corner<T, N>| across(&corner.vertex.point);
-        let safe = self.margin() * T::count(3) + norm(&across(point));
-        let mut highest = -T::HUGE;
+        let safe = self.margin() * T::count(3) + norm(&across(&simplex.point()));
+        let mut highest = T::zero();
         for (i, corner) in simplex.corners.iter().enumerate() {
             let mut others = simplex.corners.iter().enumerate().filter(|&(j, _)| j != i).map(|(_, other)| seen(other));
             let base = others.next()?;
@@ -58,10 +65,9 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             if !(corner.weight * over > safe) {
                 return None;
             }
-            highest = highest.at_least(-line.dot(&corner.vertex.point));
+            highest = highest.at_least(line.dot(&corner.vertex.point).abs());
         }
-        let lower = self.bounds.lower_ball(-highest, self.margin_along(&line), self.per_ball);
-        (simplex.corners.len() == N).then_some(lower)
+        (simplex.corners.len() == N).then_some(highest)
     }
 
     /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is
@@ -168,7 +174,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// Has a height of A come so near to 0 that rounding is all that is left to say of it?
     pub fn is_at_zero(&self) -> bool {
-        self.height + self.bounds.radius <= self.margin() * T::count(64)
+        self.height + self.bounds.radius <= self.margin_along(&self.direction) * T::count(64)
     }
 
     /// Is this bracket about as narrow as rounding allows?

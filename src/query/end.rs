@@ -57,6 +57,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             (Stop::Above | Stop::Below, _) => Stop::Rounding,
             (stop, _) => stop,
         };
+        // Too thin for its margin is not flat: that takes an upper bound that says so.
+        let stop = if stop == Stop::Flat && !self.is_at_zero() { Stop::Rounding } else { stop };
         let at_zero = lower <= T::zero() && (met || self.is_tight(&Bracket { lower, upper }));
         let outcome = stop.outcome(lower, upper, met, at_zero);
         witness.rescale(T::one() / self.scale);

@@ -2,7 +2,7 @@
 //! [`Answer`].
 
 use crate::answer::{Plan, Stop};
-use crate::bounds::{Bounds, Reach};
+use crate::bounds::{Axes, Bounds};
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, finite};
 use crate::simplex::Vertex;
@@ -56,14 +56,16 @@ pub(crate) struct Query<'q, T, const N: usize> {
     gauge_error: T,
     /// What A says of its extent; 0: nothing.
     extent: T,
-    pub bounds: Bounds<T, N>,
+    pub bounds: Bounds<T>,
+    /// With margins by direction: what A knows of itself axis by axis.
+    pub axes: Option<Axes<T, N>>,
     /// Tolerance and threshold in scaled units.
     pub options: Options<T, N>,
     /// A power of two that brings the set to a size near 1, so that no product under- or overflows; 1 for sets that are
     /// near it already. All lengths of a query are scaled by it, the answer's are scaled back: both exactly.
     scale: T,
-    /// What has been seen of A.
-    reach: Reach<T, N>,
+    /// Largest norm of a point seen.
+    reach: T,
     /// The best upper bound: unit direction, support value, value of Q, and their quotient without margins.
     pub direction: Vector<T, N>,
     height: T,
@@ -107,11 +109,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         options: Options<T, N>,
     ) -> (Self, Result<(), Failure>) {
         let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
-        let support_errors = a.errors();
         let ball = q.ball_radius();
         let per_ball = T::one() / ball.unwrap_or(T::one());
-        let lengths = [radius, extent, support_error, gauge_error];
-        let sane = lengths.iter().chain(support_errors.iter()).all(|x| x.finite() && *x >= T::zero());
+        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
         let sane = sane && per_ball.finite() && per_ball > T::zero();
         let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
         let query = Query {
@@ -121,10 +121,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             per_ball,
             gauge_error,
             extent,
-            bounds: Bounds { support_error, support_errors, radius, unknown_extent: !(extent > T::zero()) },
+            bounds: Bounds { support_error, radius, dimension: N, unknown_extent: !(extent > T::zero()) },
+            axes: None,
             options,
             scale: T::one(),
-            reach: Reach::none(),
+            reach: T::zero(),
             direction: Vector::zeros(),
             height: T::HUGE,
             gauge: T::one(),
@@ -162,7 +163,6 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             let scale = T::one() / size.power_of_two();
             self.scale = scale;
             self.bounds.support_error *= scale;
-            self.bounds.support_errors *= scale;
             self.bounds.radius *= scale;
             self.options.absolute *= scale;
             self.options.threshold = self.options.threshold.map(|t| t * scale);
@@ -181,7 +181,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// The largest norm of a point seen, in the caller's units.
     pub fn true_reach(&self) -> T {
-        self.reach.whole / self.scale
+        self.reach / self.scale
     }
 
     /// Calls of A's support function so far.
@@ -242,7 +242,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         if !squared.finite() {
             return Err(Failure(crate::NOT_FINITE));
         }
-        self.reach.see(point, squared);
+        if squared > self.reach * self.reach {
+            self.reach = squared.root();
+        }
         Ok(())
     }
 
@@ -347,7 +349,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// A's size, as far as it is known.
     pub fn size(&self) -> T {
-        if self.extent > T::zero() { self.extent * self.scale } else { self.reach.whole }
+        if self.extent > T::zero() { self.extent * self.scale } else { self.reach }
     }
 
     /// Which changes of sign leave both A and Q as they are: bit s for the coordinates named by the bits of s.
@@ -358,7 +360,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Lengths below this cannot be told from zero in a plane equation.
     pub fn resolution(&self) -> T {
-        self.reach.resolution()
+        T::count(8 * N) * T::ROUNDOFF * self.reach
     }
 
     /// The key of a facet, eq. 24: no more than its true distance with respect to Q, up to the margin of the bracket.
@@ -403,23 +405,30 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Largest norm of a point of the core seen so far.
     pub fn reach(&self) -> T {
-        self.reach.whole
+        self.reach
     }
 
     /// How far a height may be off, whatever the direction.
     pub fn margin(&self) -> T {
-        self.bounds.margin(self.reach.whole)
+        self.bounds.margin(self.reach)
     }
 
     /// The same along a unit vector.
     pub fn margin_along(&self, direction: &Vector<T, N>) -> T {
-        self.bounds.margin_along(direction, &self.reach)
+        let margin = self.margin();
+        self.axes.as_ref().map_or(margin, |axes| axes.margin(direction).at_most(margin))
     }
 
-    /// Do heights along the best direction depend on its small coordinates only, so that margins by direction say much more? (Bodies that
-    /// are long and flat along the coordinate axes: a floor.)
-    pub fn is_graded(&self) -> bool {
-        self.margin_along(&self.direction) * T::count(2) < self.margin()
+    /// Takes margins by direction from now on, if that gains anything: where A is long and flat along the coordinate axes (a floor), heights
+    /// across are known much better. The query has been made ready.
+    pub fn look_by_direction(&mut self) -> bool {
+        let margin = self.bounds.margin(self.size());
+        let reach = self.a.extents() * (self.scale * T::of(1.01));
+        let axes = Axes { errors: self.a.errors() * self.scale, reach };
+        let stated = reach.iter().any(|&x| x > T::zero());
+        let sane = stated && reach.iter().chain(axes.errors.iter()).all(|x| x.finite() && *x >= T::zero());
+        self.axes = (sane && axes.are_uneven(margin)).then_some(axes);
+        self.axes.is_some()
     }
 
     /// Is the origin certainly outside the core, by this support value?

@@ -128,7 +128,9 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f64, shape: *const S, support: qd
         dimension: 3,
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body_f64 { symmetry, rolling_radius, extents, errors, ..qdist_body_f64::at_origin(set) }) };
+    unsafe {
+        body.write(qdist_body_f64 { symmetry, rolling_radius, extents, errors, ..qdist_body_f64::at_origin(set) })
+    };
     Ok(())
 }
 

@@ -321,8 +321,7 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
     /// Writes the minimum into the answer.
     pub fn conclude(&self, minimum: &Minimum<T>, answer: &mut Answer<T, 6>) {
         let Ok(gauge) = self.q.value(&minimum.u) else { return };
-        let (support_error, support_errors) = (self.set.error(), self.set.errors());
-        let bounds = Bounds { support_error, support_errors, radius: T::zero(), unknown_extent: false };
+        let bounds = Bounds { support_error: self.set.error(), radius: T::zero(), dimension: 6, unknown_extent: false };
         let height = self.set.value(&minimum.u);
         let upper = bounds.upper(height, bounds.margin(self.size), gauge, self.q.error());
         // What the span's basis is off by is not known here.

@@ -1,0 +1,43 @@
+//! A second look, where rounding has left an answer open.
+//!
+//! A query begins with what costs least: one margin for all directions, from what A says of its size. Where that ends it with `Precision`, `Touching`,
+//! `Degenerate` or `Capacity`, two things may be known better, and the query is run once more if one of them is:
+//!
+//! * **A's extent**: stated bounds may be loose. 2 N support calls measure it (`Measured`).
+//! * **Margins by direction** ([`bounds`](crate::bounds)): what is long and flat along the coordinate axes (a floor of a kilometre, in metres) is known much
+//!   better across than along.
+//!
+//! Both brackets are true; the narrower one is the answer.
+
+use crate::answer::Answer;
+use crate::query::Query;
+use crate::scalar::Real;
+use crate::solver::Solver;
+use crate::support::{Failure, Measured, Support};
+
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// The answer, or that of a second look. `run` puts the query to a set, for an answer worth having; it is told whether that is certain because A
+    /// was measured.
+    pub(crate) fn look_again(
+        &mut self,
+        answer: Answer<T, N>,
+        a: &dyn Support<T, N>,
+        run: impl FnOnce(&mut Self, &dyn Support<T, N>, bool) -> Option<Answer<T, N>>,
+    ) -> Answer<T, N> {
+        if !answer.outcome.is_open() {
+            return answer;
+        }
+        let measured = Measured::new(a, answer.reach());
+        let calls = if measured.is_some() { 2 * N as u32 } else { 0 };
+        let set = measured.as_ref().map_or(a, |measured| measured);
+        match run(self, set, measured.is_some()) {
+            Some(second) => second.or_wider(answer, calls),
+            None => answer,
+        }
+    }
+
+    /// Makes a query ready for a second look; false when that would show nothing new.
+    pub(crate) fn sharpen(&self, query: &mut Query<'_, T, N>, checked: Result<(), Failure>, measured: bool) -> bool {
+        checked.and_then(|()| query.normalize()).is_ok() && (query.look_by_direction() || measured)
+    }
+}
