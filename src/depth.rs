@@ -101,12 +101,20 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
 
     fn core_anchor(&self) -> Result<Anchor<T, N>, Failure> {
         if let Some((center, extent)) = self.shape.center() {
-            return Ok(Anchor { center: Some(center), extent, error: self.shape.error(), corner: None });
+            return Ok(Anchor { center: Some(center), extent, error: self.shape.error() });
         }
         let known = self.shape.extent();
         if known > T::zero() {
-            return Ok(Anchor { center: None, extent: known, error: self.shape.error(), corner: None });
+            return Ok(Anchor { center: None, extent: known, error: self.shape.error() });
         }
+        let extent = norm(&self.corner()?);
+        // What `Support::error` would be, had the shape known its extent.
+        let error = self.shape.error().at_least(T::count(16 * N) * T::ROUNDOFF * extent);
+        if extent.finite() { Ok(Anchor { center: None, extent, error }) } else { Err(Failure(NOT_FINITE)) }
+    }
+
+    /// The box that support calls along the axes draw around the core.
+    fn corner(&self) -> Result<Vector<T, N>, Failure> {
         let mut corner = Vector::<T, N>::zeros();
         for i in 0..N {
             for sign in [T::one(), -T::one()] {
@@ -117,11 +125,7 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
                 corner[i] = if reach < corner[i] { corner[i] } else { reach };
             }
         }
-        let extent = norm(&corner);
-        // What `Support::error` would be, had the shape known its extent.
-        let error = self.shape.error().at_least(T::count(16 * N) * T::ROUNDOFF * extent);
-        let anchor = Anchor { center: None, extent, error, corner: Some(corner) };
-        if extent.finite() { Ok(anchor) } else { Err(Failure(NOT_FINITE)) }
+        Ok(corner)
     }
 
     /// Extents and errors along the axes of the world.
@@ -129,11 +133,11 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
         let (mut extents, mut errors) = (self.shape.extents(), self.shape.errors());
         if anchor.center.is_some() {
             extents = Vector::repeat(anchor.extent);
-        }
-        if let Some(corner) = &anchor.corner {
-            // What `Support::errors` would be, had the shape known its extent.
+        } else if !(self.shape.extent() > T::zero()) {
+            // What they would be, had the shape known its extent.
             let rounding = T::count(16 * N) * T::ROUNDOFF;
-            (extents, errors) = (*corner, errors.zip_map(corner, |e, x| e.at_least(rounding * x)));
+            extents = self.corner().unwrap_or(Vector::repeat(anchor.extent));
+            errors = errors.zip_map(&extents, |e, x| e.at_least(rounding * x));
         }
         let swollen = self.inflation * T::count(8) * T::ROUNDOFF;
         let reach = spread(&self.rotation, &extents.add_scalar(self.inflation));
@@ -211,8 +215,6 @@ struct Anchor<T: Real, const N: usize> {
     extent: T,
     /// Error of the shape's support function.
     error: T,
-    /// For a shape of unknown extent: the box that was measured.
-    corner: Option<Vector<T, N>>,
 }
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
@@ -252,6 +254,15 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error, extra: left })
     }
 
+    /// The error along a unit vector, as [`axes`](Self::axes) tells it.
+    fn error_along(&self, n: &Vector<T, N>) -> T {
+        let along = |body: &Body<'_, T, N>| {
+            let seen = body.rotation.map(|x| x.abs()).tr_mul(&n.abs());
+            seen.dot(&body.shape.errors()) + seen.dot(&body.shape.extents()) * (T::count(13) * T::ROUNDOFF)
+        };
+        along(self.a) + along(self.b) + self.offset.abs().dot(&n.abs()) * (T::count(4) * T::ROUNDOFF)
+    }
+
     /// Extents and errors along each axis of the world, with E_i = (|R| E)_i in the place of E: the local direction is off by 3 u (|R|^T |u|)_j, which
     /// costs that times 2 E_j, 6 u sum of |u_i| E_i together; the anchor's subtraction u, the product with the rotation 3 u, and the rest as in `new`.
     fn axes(&self) -> Axes<T, N> {
@@ -263,6 +274,7 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
     }
 
     /// The query for the depth.
+    #[inline(always)]
     fn query<'q>(
         &'q self,
         ball: &'q Ball<T>,
@@ -476,13 +488,33 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if !answer.outcome.is_open() {
             return Depth::new(&answer, pair);
         }
-        // A second look (module `second_look`); here each body is measured by itself.
-        let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
-        let measured = a.is_some() || b.is_some();
-        let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
-        let Ok(sharper) = Pair::new(&a, &b) else { return Depth::new(&answer, pair) };
-        let second = self.expand_sharper(sharper.query(&ball, &options, interrupt), measured);
+        let second = self.look_again_at_pair(pair, &answer, &options, interrupt);
         Depth::new(&second.map_or(answer.clone(), |second| second.or_wider(answer, 0)), pair)
+    }
+
+    /// A second look (module `second_look`), at each body by itself.
+    #[cold]
+    #[inline(never)]
+    fn look_again_at_pair(
+        &mut self,
+        pair: &Pair<'_, '_, T, N>,
+        answer: &Answer<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Answer<T, N>> {
+        let ball = Ball::unit();
+        let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
+        if a.is_none() && b.is_none() {
+            let is_flat = answer.outcome == Outcome::Degenerate;
+            // (The first product says at once that the offset's own rounding leaves nothing to gain.)
+            let n = &answer.direction;
+            let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
+            let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
+            return (is_flat || finer).then(|| self.expand_sharper(pair.query(&ball, options, interrupt), false))?;
+        }
+        let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
+        let sharper = Pair::new(&a, &b).ok()?;
+        self.expand_sharper(sharper.query(&ball, options, interrupt), true)
     }
 }
 

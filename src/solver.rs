@@ -145,6 +145,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         self.sharpen(&mut query, checked, measured).then(|| self.expand_ready(&mut query))
     }
 
+    #[inline(always)]
     fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
         match self.open(query) {
