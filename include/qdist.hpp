@@ -34,7 +34,7 @@ class Solver {
 public:
     Solver() noexcept {
         qdist_solver *solver = nullptr;
-        Api<T>::template init<N>(memory_, sizeof memory_, MaxVertices, MaxFacets, &solver);
+        Api<T>::template init<N>(memory_, uint32_t{sizeof memory_}, MaxVertices, MaxFacets, &solver);
     }
     // The handle for the C interface; it is the memory's address, whatever copy this is.
     qdist_solver *get() noexcept { return reinterpret_cast<qdist_solver *>(memory_); }
