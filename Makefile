@@ -90,6 +90,8 @@ test-c: lib lib-std lib-mesh
 	$(call c-tests,plain,,$(lib),)
 	@echo "C and C++ tests of meshes with the hosted library"
 	$(call mesh-tests,plain,,$(lib_mesh))
+	@echo "README's examples in C"
+	@scripts/readme.sh $(lib) $(lib_mesh) $(out)/readme
 	@echo "C and C++ tests with sanitizers and the hosted library"
 	$(call c-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std) -lpthread -ldl,)
 	$(call mesh-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std))

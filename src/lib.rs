@@ -140,3 +140,8 @@ pub use workspace::Workspace;
 pub const NOT_FINITE: i32 = i32::MIN;
 /// Failure code: an internal set has no points.
 pub(crate) const EMPTY: i32 = i32::MIN + 1;
+
+/// README's examples run as tests.
+#[cfg(all(doctest, feature = "mesh"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
