@@ -34,7 +34,7 @@ use qdist::{Body, Real};
 use std::path::{Path, PathBuf};
 
 /// A file or folder of the shared data, which lie beside the project and not in it. A test that calls this is marked
-/// `#[ignore = "needs ../shared/data"]`: `make test` runs it with `--include-ignored` where the data are there, or must be (`CI=true`), and
+/// `#[ignore = "needs ../shared/data"]`: `./x test` runs it with `--include-ignored` where the data are there, or must be (`CI=true`), and
 /// counts it as skipped elsewhere.
 pub fn shared(path: &str) -> PathBuf {
     let asked = std::env::args().any(|a| a == "--include-ignored" || a == "--ignored");
