@@ -1,24 +1,13 @@
 # The C side of qdist: libraries, header, C and C++ tests, proofs about the freestanding library. Rust alone needs only cargo.
 #
-#   make lib            freestanding static library (no std)       make demo          build and run the C examples
-#   make lib-mesh       hosted static library with meshes          make demo-mesh     examples/mesh_depth.c and haptic.c
-#   make lib-std        hosted debug library, for sanitizers       make test-c        C and C++ tests, in three ways
-#   make header         src/capi/f32 and the headers of include/   make freestanding  a program without any libc
-#   make header-check   fails when they are stale                  make purity        no panic, malloc or libc is reachable
-#   make stack          stack bytes of a query              
-#   make test           everything                                 make compare CASES="a.txt b.txt" OUT=dir
-#   make bench-dq OUT=dir [QUICK=1]      d_Q in up to six dimensions: table, exponents, pictures, bars
-#   make bench-grasp OUT=dir [QUICK=1]   grasps: what planners and controllers ask, in times and rates
-#   make bench-pdg OUT=dir [QUICK=1]     depths of meshes: quality, times, and FCL's proximity queries on the same poses
-#
-# Needs cargo and a C compiler. What a target needs besides (a C++ compiler, libccd and FCL) is installed by apt-get where that
-# is possible, cbindgen by cargo.
+# `./x` lists the targets, installs what they need and calls them; those that are called by themselves ask it to.
 
 CARGO ?= cargo
 CC ?= cc
 CXX ?= c++
-CFLAGS_TEST = -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -g -Iinclude
-CXXFLAGS_TEST = -std=c++17 -Wall -Wextra -Wpedantic -Werror -O1 -g -Iinclude
+WARNINGS = -Wall -Wextra -Wpedantic -Wconversion
+CFLAGS_TEST = -std=c99 $(WARNINGS) -Werror -O1 -g -Iinclude
+CXXFLAGS_TEST = -std=c++17 $(WARNINGS) -Werror -O1 -g -Iinclude
 
 target := $(or $(CARGO_TARGET_DIR),target)
 lib := $(target)/release/libqdist.a
@@ -27,64 +16,65 @@ lib_mesh := $(target)/hosted/libqdist.a
 system_libs := -lpthread -ldl -lm
 out := $(target)/c
 version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-# Runs apt-get as root when it may.
-apt = if [ "$$(id -u)" = 0 ]; then apt-get update -qq && apt-get install -y -qq --no-install-recommends $(1) >/dev/null; \
-      else echo "please install: $(1)" >&2; exit 1; fi
+# Sees to it that what the target needs is here.
+need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp bench-pdg compiler clean
+.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp bench-pdg clean
 all: lib
 
-compiler:
-	@command -v $(CC) >/dev/null && command -v $(CXX) >/dev/null || { $(call apt,build-essential); }
-	@mkdir -p $(out)
-
-lib: compiler
-	@echo "building $(lib) (no std, release)"
+lib:
+	$(need)
+	@echo "building $(lib) (no std, release; takes about a minute)"
 	@$(CARGO) rustc --quiet --locked --lib --release --features capi,grasp,panic-handler --crate-type staticlib
 
-lib-std: compiler
+lib-std:
+	$(need)
 	@echo "building $(lib_std) (std, debug)"
 	@$(CARGO) rustc --quiet --locked --lib --features capi,grasp,c-allocator --crate-type staticlib
 
-lib-mesh: compiler
-	@echo "building $(lib_mesh) (std, meshes, release)"
+lib-mesh:
+	$(need)
+	@echo "building $(lib_mesh) (std, meshes, release; takes a minute or two)"
 	@$(CARGO) rustc --quiet --locked --lib --profile hosted --features capi,grasp,c-allocator --crate-type staticlib
 
 header:
+	$(need)
 	@echo "writing src/capi/f32/ and include/"
 	@scripts/f32.sh
 	@scripts/header.sh
 
 header-check:
+	$(need)
 	@echo "checking that src/capi/f32/ and include/ are fresh"
 	@scripts/f32.sh --check
 	@scripts/header.sh --check
 
 demo: lib
 	@echo "building and running examples/depth.c"
-	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/depth.c $(lib) -o $(out)/depth
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude examples/depth.c $(lib) -o $(out)/depth
 	@$(out)/depth
 	@echo "building and running examples/gripper.c"
-	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/gripper.c $(lib) -lm -o $(out)/gripper
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude examples/gripper.c $(lib) -lm -lpthread -o $(out)/gripper
 	@$(out)/gripper
 
 demo-mesh: lib-mesh
 	@echo "building and running examples/mesh_depth.c"
-	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/mesh_depth.c $(lib_mesh) $(system_libs) -o $(out)/mesh_depth
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude examples/mesh_depth.c $(lib_mesh) $(system_libs) -o $(out)/mesh_depth
 	@$(out)/mesh_depth
 	@echo "building and running examples/haptic.c"
-	@$(CC) -std=c99 -O2 -Wall -Wextra -Iinclude examples/haptic.c $(lib_mesh) $(system_libs) -o $(out)/haptic
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude examples/haptic.c $(lib_mesh) $(system_libs) -o $(out)/haptic
 	@$(out)/haptic
 
 # $(call c-tests,directory,extra flags,library,command in front)
 define c-tests
 	@mkdir -p $(out)/$(1)
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/smoke.c $(3) -lm -o $(out)/$(1)/smoke
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bodies.c $(3) -lm -o $(out)/$(1)/bodies
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bad_arguments.c $(3) -lm -o $(out)/$(1)/bad_arguments
 	@$(CC) $(CFLAGS_TEST) $(2) -DCARGO_VERSION='"$(version)"' ffi-tests/abi.c $(3) -lm -o $(out)/$(1)/abi
 	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/smoke_cpp.cpp $(3) -lm -o $(out)/$(1)/smoke_cpp
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/grasp.c $(3) -lm -o $(out)/$(1)/grasp
-	@for test in smoke bad_arguments abi grasp smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
+	@for test in smoke bodies bad_arguments abi grasp smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
 endef
 
 # $(call mesh-tests,directory,extra flags,library)
@@ -96,19 +86,22 @@ define mesh-tests
 endef
 
 test-c: lib lib-std lib-mesh
+	$(need)
 	@echo "C and C++ tests with the freestanding library"
 	$(call c-tests,plain,,$(lib),)
 	@echo "C and C++ tests of meshes with the hosted library"
 	$(call mesh-tests,plain,,$(lib_mesh))
+	@echo "README's examples in C"
+	@scripts/readme.sh $(lib) $(lib_mesh) $(out)/readme
 	@echo "C and C++ tests with sanitizers and the hosted library"
 	$(call c-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std) -lpthread -ldl,)
 	$(call mesh-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std))
 	@if command -v valgrind >/dev/null; then \
 	    echo "C and C++ tests under valgrind"; \
-	    for test in smoke bad_arguments abi grasp smoke_cpp mesh mesh_cpp; do \
+	    for test in smoke bodies bad_arguments abi grasp smoke_cpp mesh mesh_cpp; do \
 	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
 	    done; \
-	else echo "valgrind is not installed: its runs are skipped"; fi
+	else echo "SKIPPED: valgrind is not there"; fi
 comma := ,
 
 freestanding: lib
@@ -117,9 +110,10 @@ freestanding: lib
 	    $(CC) -std=c99 -O2 -Wall -Wextra -Werror -ffreestanding -fno-builtin -fno-stack-protector -nostdlib -static \
 	        -Wl,--gc-sections -Iinclude ffi-tests/freestanding.c $(lib) -o $(out)/freestanding && \
 	    $(out)/freestanding && echo "freestanding: 1 passed, 0 failed"; \
-	else echo "freestanding: skipped, the test knows Linux on x86-64 only"; fi
+	else echo "SKIPPED: the program without libc knows Linux on x86-64 only"; fi
 
-purity: compiler
+purity:
+	$(need)
 	@scripts/purity.sh
 
 stack: lib
@@ -127,12 +121,10 @@ stack: lib
 	@$(out)/stack
 
 # CHECK=--check makes a wrong or missing bracket an error.
-CASES ?= $(wildcard ../shared/data/convex/*.txt)
+CASES ?= $(or $(wildcard ../shared/data/convex/*.txt),$(wildcard tests/data/*.txt))
 OUT ?= out/compare
 compare: lib
-	@printf '#include <ccd/ccd.h>\n#include <fcl/fcl.h>\n#include <libqhullcpp/Qhull.h>\nint main() {}\n' | \
-	    $(CXX) -std=c++17 -fsyntax-only -x c++ $(peer_includes) - 2>/dev/null || \
-	    { echo "installing libccd, FCL and Qhull"; $(call apt,libccd-dev libfcl-dev libqhull-dev); }
+	$(need)
 	@echo "building compare"
 	@$(CXX) -std=c++17 -O2 -Wall -Wextra -Iinclude $(peer_includes) ffi-tests/compare.cpp ffi-tests/peers.cpp ffi-tests/cases.cpp \
 	    $(lib) -lfcl -lccd -lqhullcpp -lqhull_r -o $(out)/compare
@@ -144,18 +136,19 @@ peer_includes = -isystem /usr/include/eigen3
 
 bench-dq: OUT = out/dq
 bench-dq:
+	$(need)
 	@echo "measuring d_Q; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --features std --bench dq -- $(if $(QUICK),--quick) $(OUT)
 
 bench-grasp: OUT = out/grasp
 bench-grasp:
+	$(need)
 	@echo "measuring grasps; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --features std,grasp --bench grasp -- $(if $(QUICK),--quick) $(OUT)
 
 bench-pdg: OUT = out/pdg
-bench-pdg: compiler
-	@printf '#include <fcl/fcl.h>\nint main() {}\n' | $(CXX) -std=c++17 -fsyntax-only -x c++ $(peer_includes) - 2>/dev/null || \
-	    { echo "installing FCL"; $(call apt,libfcl-dev); }
+bench-pdg:
+	$(need)
 	@echo "building FCL's part"
 	@$(CXX) -std=c++17 -O3 -Wall -Wextra $(peer_includes) benches/pdg/fcl.cpp -lfcl -lccd -o $(out)/pdg_fcl
 	@echo "measuring depths of meshes; results go to $(OUT)"

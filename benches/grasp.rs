@@ -1,6 +1,6 @@
 //! Grasps: what a planner and a controller pay for an answer.
 //!
-//! `make bench-grasp OUT=dir [QUICK=1]` prints a table and writes `dir/grasp.csv`: one row per kind of question, number of contacts, norm and
+//! `./x bench-grasp OUT=dir [QUICK=1]` prints a table and writes `dir/grasp.csv`: one row per kind of question, number of contacts, norm and
 //! tolerance, with the median, 90th percentile and maximum time over random force-closed grasps of soft fingers on a unit ball, and how many
 //! such questions are answered in a second. All in `f64`, in one workspace of 512 vertices and 4096 facets.
 

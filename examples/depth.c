@@ -1,5 +1,5 @@
 /* Penetration depth and distance of pairs of bodies that have been reported against other libraries: what the other library said,
- * the reference value, and qdist's bracket, outcome and time. `make demo` builds and runs it. */
+ * the reference value, and qdist's bracket, outcome and time. `./x demo` builds and runs it. */
 #define _POSIX_C_SOURCE 199309L
 #include "qdist.h"
 

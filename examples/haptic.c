@@ -2,7 +2,7 @@
  * queries by its clock, and turns it into a force by a spring from the ring's pose to the nearest free one. Another thread asks the same in full,
  * some milliseconds each, and the loop takes its answers over when they are there. The loop never waits for it.
  *
- * `make demo-mesh` builds and runs it. */
+ * `./x demo-mesh` builds and runs it. */
 #define _POSIX_C_SOURCE 200112L
 #include "qdist_mesh.h"
 

@@ -1,4 +1,4 @@
-/* How far must a box move to come out of the corner of an L? `make demo-mesh` builds and runs it. */
+/* How far must a box move to come out of the corner of an L? `./x demo-mesh` builds and runs it. */
 #include "qdist_mesh.h"
 
 #include <math.h>

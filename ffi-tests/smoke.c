@@ -441,7 +441,7 @@ static int32_t Q(egg)(void *user, const REAL *direction, REAL *point) {
     uint32_t i;
     ++w->calls;
     for (i = 0; i < w->size; ++i) sum += (double)direction[i] * direction[i] * (1 + i);
-    for (i = 0; i < w->size; ++i) point[i] = (REAL)(direction[i] * (1 + i) / sqrt(sum) + w->at[i]);
+    for (i = 0; i < w->size; ++i) point[i] = (REAL)(direction[i] * (REAL)(1 + i) / sqrt(sum) + w->at[i]);
     return 0;
 }
 

@@ -328,8 +328,8 @@ qdist_status qdist_best_of6_f64(qdist_solver *solver,
  * The smallest contact forces that resist one given wrench: how a controller distributes a load. Microseconds for a few contacts, no
  * solver and no memory but the stack, about 4 KB in double. Size is measured in force caps: 1 is the caps themselves. */
 
-// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and changes nothing else. Plain numbers;
-// start with `= {0}`.
+// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the
+// search begins anew without it. Plain numbers; start with `= {0}`.
 typedef struct {
     // 0 to 6.
     uint32_t count;
@@ -341,7 +341,7 @@ typedef struct {
 typedef struct {
     // sizeof(qdist_force_options_f64).
     uint32_t struct_size;
-    // The most calls of the support function, beside some 20 at the beginning; 0: 1000.
+    // The most calls of the support function, beside some 20 at the beginning; 0: 1000. With a memory twice as many at most.
     uint32_t max_iterations;
     // The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
     double relative;

@@ -545,8 +545,9 @@ fn read_obj(text: &str) -> Mesh {
 
 /// Every known upper bound is above; and how near.
 #[test]
+#[ignore = "needs ../shared/data"]
 fn shared_queries() {
-    let Some(path) = shared("shared_queries", "meshes/queries.json") else { return };
+    let path = shared("meshes/queries.json");
     let folder = path.parent().unwrap();
     let json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
     let mut solids: HashMap<&str, Pieces> = HashMap::new();
@@ -590,8 +591,9 @@ fn shared_queries() {
 
 /// Slivers among its triangles.
 #[test]
+#[ignore = "needs ../shared/data"]
 fn pieces_of_the_shared_hammer_do_not_meet_its_surface() {
-    let Some(path) = shared("pieces_of_the_shared_hammer", "meshes/hammer.obj") else { return };
+    let path = shared("meshes/hammer.obj");
     let mesh = read_obj(&std::fs::read_to_string(path).unwrap());
     let mut memory = qdist::Workspace::<f64, 3, 256, 512>::new();
     for piece in mesh.pieces().pieces() {
@@ -608,9 +610,10 @@ fn pieces_of_the_shared_hammer_do_not_meet_its_surface() {
 }
 
 #[test]
+#[ignore = "needs ../shared/data"]
 fn a_soup_of_the_shared_meshes_is_refused() {
     for name in ["rob", "env"] {
-        let Some(path) = shared("a_soup", &format!("meshes/real/{name}.obj")) else { return };
+        let path = shared(&format!("meshes/real/{name}.obj"));
         let mesh = read_obj(&std::fs::read_to_string(path).unwrap());
         assert!(Pieces::new(&mesh.vertices, &mesh.triangles, &BuildOptions::default()).is_err(), "{name}");
     }

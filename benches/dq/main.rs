@@ -1,7 +1,7 @@
 //! d_Q in up to six dimensions: time, memory and width of the bracket, against plain expansion and the paper's
 //! bookkeeping.
 //!
-//! `make bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the
+//! `./x bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the
 //! bars the project has set itself.
 //!
 //! A suffix of a case's name says what was run: nothing for the solver, `/expand`, `/scan`, `/scan_sorted`. `eps` is

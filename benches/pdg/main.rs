@@ -1,7 +1,7 @@
 //! The generalized penetration depth of meshes: quality, time, and the bars.
 //!
 //! ```text
-//! make bench-pdg OUT=dir [QUICK=1]
+//! ./x bench-pdg OUT=dir [QUICK=1]
 //! cargo bench --features std --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
 //! ```
 //!

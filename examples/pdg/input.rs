@@ -174,6 +174,18 @@ mod tests {
         assert_eq!(query.known(Kind::Sigma), Known { best: Some(0.2), lower: None, exact: None });
     }
 
+    /// README's first command; the files that it names are there.
+    #[test]
+    fn the_fixture() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/meshes");
+        let queries = queries(&folder.join("queries.json")).unwrap();
+        assert_eq!(queries.len(), 4);
+        for query in queries {
+            assert!(query.a.exists() && query.b.exists(), "{query:?}");
+            assert!(query.known(Kind::Disp).best.is_some(), "{query:?}");
+        }
+    }
+
     #[test]
     fn trouble_names_the_query_and_the_field() {
         assert!(trouble("[0, 1, 0, 0]", "[0, 1, 0]").contains("one: `pose0.q_wxyz`"));

@@ -1,9 +1,9 @@
 //! How little must A move, rotations included, to be free of B? Asks the queries of a file, or poses of two mesh files.
 //!
 //! ```text
-//! cargo run --release --features std --example pdg -- --queries ../shared/data/meshes/queries.json
+//! cargo run --release --features std --example pdg -- --queries tests/data/meshes/queries.json
 //! cargo run --release --features std --example pdg -- pawn.obj cad.obj --pose 1,0,0,0,0.1,0,0.2 --picture out
-//! cargo run --release --features std --example pdg -- --table1
+//! cargo run --release --features std --example pdg -- --table1          # of ../shared/data/meshes
 //! ```
 //!
 //! Prints a table beside the file's references, or with `--csv` one line for every query and metric. Lengths are those of the files; for `sigma` they

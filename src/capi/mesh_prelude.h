@@ -19,7 +19,7 @@
  *     qdist_mesh_free(body);
  *     qdist_mesh_free(mesh);
  *
- * Library     These functions are in the hosted library (`make lib-mesh`), with all of qdist.h; link it with the system's threads and mathematics
+ * Library     These functions are in the hosted library (`./x lib-mesh`), with all of qdist.h; link it with the system's threads and mathematics
  *             (-lpthread -ldl -lm). The freestanding library does not contain them. Everything is in double.
  * Ownership   Arrays and structs are yours, and read or written during a call only. Meshes, pairs and trackers are the library's: what a create
  *             function returned goes to the free function of its type, once. Pairs and trackers keep what they need of their meshes.

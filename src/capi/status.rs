@@ -80,6 +80,8 @@ pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 29;
 pub const QDIST_ERROR_ALLOCATOR: qdist_status = 30;
 /// A defect of the library, which went no further. Please report it.
 pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
+/// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
+pub const QDIST_ERROR_UNBOUNDED: qdist_status = 32;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -107,6 +109,8 @@ pub const QDIST_DEGENERATE: qdist_outcome = 8;
 pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
 /// `interrupt` of the options said so.
 pub const QDIST_INTERRUPTED: qdist_outcome = 10;
+/// Two half spaces overlap without end: no translation separates them. d is infinite; both bounds are DBL_MAX (float: FLT_MAX).
+pub const QDIST_UNBOUNDED: qdist_outcome = 11;
 
 /// How was the query answered? What A and Q are decides it.
 pub type qdist_plan = i32;
@@ -170,6 +174,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_MESH_NOT_SOLID => c"mesh bounds no solid",
         QDIST_ERROR_ALLOCATOR => c"allocator set or in use",
         QDIST_ERROR_INTERNAL => c"defect of the library",
+        QDIST_ERROR_UNBOUNDED => c"half space where it cannot serve",
         _ => c"unknown status",
     }
     .as_ptr()
@@ -190,6 +195,7 @@ pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char 
         QDIST_DEGENERATE => c"degenerate",
         QDIST_SUPPORT_FAILED => c"support failed",
         QDIST_INTERRUPTED => c"interrupted",
+        QDIST_UNBOUNDED => c"unbounded",
         _ => c"unknown outcome",
     }
     .as_ptr()
@@ -212,6 +218,11 @@ pub extern "C" fn qdist_plan_string(plan: qdist_plan) -> *const c_char {
 /// `Ok`, or the status that says what is wrong.
 pub(super) type Check<T = ()> = Result<T, qdist_status>;
 
+/// And back.
+pub(super) fn from_status(status: qdist_status) -> Check {
+    if status == QDIST_OK { Ok(()) } else { Err(status) }
+}
+
 /// A check as the C caller sees it.
 pub(super) fn status(check: Check) -> qdist_status {
     check.err().unwrap_or(QDIST_OK)
@@ -230,6 +241,7 @@ pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
         Outcome::Degenerate => QDIST_DEGENERATE,
         Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
         Outcome::Interrupted => QDIST_INTERRUPTED,
+        Outcome::Unbounded => QDIST_UNBOUNDED,
     }
 }
 
@@ -246,7 +258,7 @@ pub(super) fn plan(plan: Plan) -> qdist_plan {
 
 pub(super) fn from_shape(error: ShapeError) -> qdist_status {
     match error {
-        ShapeError::Negative | ShapeError::Empty => QDIST_ERROR_ARGUMENT,
+        ShapeError::Negative | ShapeError::Empty | ShapeError::Direction => QDIST_ERROR_ARGUMENT,
         ShapeError::NonFinite => QDIST_ERROR_NONFINITE,
         ShapeError::NotOrthonormal => QDIST_ERROR_ROTATION,
     }

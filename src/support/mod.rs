@@ -20,17 +20,19 @@
 //!
 //! The solver's bracket rests on these two lines and on nothing else.
 
+pub use crate::depth::half_space::HalfSpace;
+use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
 
 mod combine;
 mod graph;
 mod hull;
 mod load;
-mod shapes;
+pub(crate) mod shapes;
 mod solids;
 
 pub(crate) use combine::Measured;
-pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
+pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
 #[cfg(feature = "capi")]
@@ -116,6 +118,13 @@ pub trait Support<T: Real, const N: usize> {
     /// For a set in R^3: exact rotational symmetry. Two bodies that turn about a common axis are measured in a plane.
     fn symmetry(&self) -> Symmetry {
         Symmetry::None
+    }
+
+    /// What answers in place of a support function, where the set has no end and so no farthest points. Of the sets of this crate only
+    /// [`HalfSpace`] has that, and no other set can: the trait is not to be had elsewhere.
+    #[doc(hidden)]
+    fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
+        None
     }
 
     /// Does the core not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? `true` is a proof,

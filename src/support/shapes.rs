@@ -26,6 +26,8 @@ pub enum ShapeError {
     Empty,
     /// A rotation matrix is farther than 1e-3 from orthonormal: use [`Linear`](super::Linear).
     NotOrthonormal,
+    /// A direction is zero.
+    Direction,
 }
 
 /// Squares and products below this lose digits to underflow: 8e-31 in `f32`, 8e-292 in `f64`.

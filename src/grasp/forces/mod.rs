@@ -23,7 +23,8 @@ pub struct ForceOptions<T> {
     pub relative: T,
     /// Larger forces are of no interest: the search ends when the least size is known to be above. Default: none.
     pub limit: T,
-    /// The most calls of the support function, beside 13 to 19 at the beginning. Default: 1000.
+    /// The most calls of the support function, beside 13 to 19 at the beginning; twice as many where a search from what is known ends without
+    /// an answer. Default: 1000.
     pub iterations: u32,
 }
 

@@ -59,6 +59,11 @@ impl<T: Real> Program<T> {
         }
     }
 
+    /// What the weights make of the points.
+    pub fn target(&self) -> &Vector<T, 6> {
+        &self.target
+    }
+
     /// Do artificial points carry weight, beyond rounding?
     pub fn is_short(&self) -> bool {
         self.total(|artificial| artificial) > self.slack()

@@ -20,7 +20,9 @@ const DOUBTS: u32 = 3;
 pub(super) struct Search<'a, 'b, T, C> {
     set: &'a WrenchSet<'b, T, C>,
     options: ForceOptions<T>,
-    /// What the contacts shall exert; in the end what the shares do exert, and the rounding of their sum.
+    /// What the contacts shall exert.
+    asked: Vector<T, 6>,
+    /// The same; in the end what the shares do exert, and the rounding of their sum.
     wrench: Vector<T, 6>,
     blur: T,
     /// Powers of two near the largest coordinates of W; their largest where W has none.
@@ -64,6 +66,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
         Ok(Search {
             set,
             options,
+            asked: wrench,
             wrench,
             blur: zero,
             rows,
@@ -78,6 +81,17 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
         })
     }
 
+    /// Begins anew, with as many iterations as before.
+    pub fn restart(&mut self) {
+        let errors = self.rows.map(|row| self.set.error() / row);
+        self.program = Program::new(self.program.target(), &errors);
+        self.sound = self.program.clone();
+        self.pool.clear();
+        (self.wrench, self.blur) = (self.asked, T::zero());
+        (self.best, self.last) = ((T::zero(), self.asked), self.asked);
+        self.options.iterations = self.options.iterations.saturating_add(self.iterations);
+    }
+
     /// The support point along a direction, scaled.
     fn point(&self, direction: &Vector<T, 6>) -> Result<Vertex<T, 6>, Failure> {
         let point = self.set.support(direction)?;
@@ -87,9 +101,9 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
         Ok(Vertex { point: point.component_div(&self.rows), witness: *direction })
     }
 
-    /// Fills the pool.
+    /// Fills the pool. What is no direction is no help.
     pub fn recall(&mut self, known: &[Vector<T, 6>]) -> Result<(), Failure> {
-        for direction in known {
+        for direction in known.iter().filter(|u| finite(u) && u.iter().any(|&x| x != T::zero())) {
             let vertex = self.point(direction)?;
             let _ = self.pool.push(vertex);
         }
@@ -203,24 +217,22 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
         })
     }
 
-    /// Writes the shares, their size and what they are off.
-    pub fn distribute(
+    /// Writes the shares of all `parts`, directions with weights; their size, and what they are off.
+    pub fn distribute<'p>(
         &mut self,
+        parts: impl Iterator<Item = (&'p Vector<T, 6>, T)>,
         shares: &mut [Vector<T, 6>],
         forces: &mut Forces<T>,
         external: &Vector<T, 6>,
     ) -> Result<(), Failure> {
         let mut size = T::zero();
-        for (vertex, weight) in self.program.parts() {
-            let weight = weight * self.unit;
-            if weight > T::zero() {
-                size += weight;
-                self.set.shares(&vertex.witness, |i, share| {
-                    if let Some(sum) = shares.get_mut(i) {
-                        *sum += share * weight;
-                    }
-                })?;
-            }
+        for (direction, weight) in parts.filter(|(_, weight)| *weight > T::zero()) {
+            size += weight;
+            self.set.shares(direction, |i, share| {
+                if let Some(sum) = shares.get_mut(i) {
+                    *sum += share * weight;
+                }
+            })?;
         }
         let upper = size * (T::one() + T::count(16) * T::ROUNDOFF) + T::TINY;
         let residual = norm(&shares.iter().fold(*external, |sum, share| sum + share));

@@ -1,4 +1,4 @@
-//! Sets made of sets: moved, mapped, added, subtracted, scaled, grown.
+//! Sets made of sets: moved, mapped, added, subtracted, joined, scaled, grown.
 //!
 //! A combination owns its parts; since a reference to a set is a set, `Rigid::new(&shape, ...)` borrows.
 //!
@@ -13,16 +13,19 @@ use nalgebra::SMatrix;
 
 use super::shapes::above;
 use super::{Failure, Support, Symmetry};
+use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
 
 #[cfg(test)]
 mod dice;
+mod join;
 mod linear;
 mod measured;
 mod rigid;
 mod scaled;
 mod sums;
 
+pub use join::Join;
 pub use linear::Linear;
 pub(crate) use measured::Measured;
 pub use rigid::Rigid;
@@ -106,6 +109,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     }
     fn symmetry(&self) -> Symmetry {
         (**self).symmetry()
+    }
+    fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
+        (**self).unbounded()
     }
     fn mirrored(&self, signs: u8) -> bool {
         (**self).mirrored(signs)

@@ -18,7 +18,7 @@ use crate::support::Failure;
 pub struct qdist_force_options_f64 {
     /// sizeof(qdist_force_options_f64).
     pub struct_size: u32,
-    /// The most calls of the support function, beside some 20 at the beginning; 0: 1000.
+    /// The most calls of the support function, beside some 20 at the beginning; 0: 1000. With a memory twice as many at most.
     pub max_iterations: u32,
     /// The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
     pub relative: f64,
@@ -26,8 +26,8 @@ pub struct qdist_force_options_f64 {
     pub limit: f64,
 }
 
-/// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and changes nothing else. Plain numbers;
-/// start with `= {0}`.
+/// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the
+/// search begins anew without it. Plain numbers; start with `= {0}`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_force_memory_f64 {
