@@ -118,8 +118,12 @@ impl<T: Real, const N: usize> Support<T, N> for Capsule<T, N> {
     fn mirrored(&self, _signs: u8) -> bool {
         true
     }
-    fn extents(&self) -> Vector<T, 3> {
-        Vector::from([T::zero(), T::zero(), self.half_height])
+    fn extents(&self) -> Vector<T, N> {
+        let mut extents = Vector::<T, N>::zeros();
+        if let Some(last) = extents.iter_mut().last() {
+            *last = self.half_height;
+        }
+        extents
     }
     fn error(&self) -> T {
         T::zero()
