@@ -539,7 +539,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Option<Answer<T, N>> {
-        let ball = Ball::unit();
+        let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
         let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
         if a.is_none() && b.is_none() {
             let is_flat = answer.outcome == Outcome::Degenerate;

@@ -10,7 +10,7 @@
 //! Both brackets are true; the narrower one is the answer.
 
 use crate::answer::Answer;
-use crate::query::Query;
+use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Measured, Support};
@@ -22,15 +22,17 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         answer: Answer<T, N>,
         a: &dyn Support<T, N>,
-        run: impl FnOnce(&mut Self, &dyn Support<T, N>, bool) -> Option<Answer<T, N>>,
+        options: &Options<T, N>,
+        run: impl FnOnce(&mut Self, &dyn Support<T, N>, Options<T, N>, bool) -> Option<Answer<T, N>>,
     ) -> Answer<T, N> {
         if !answer.outcome.is_open() {
             return answer;
         }
+        let Some(options) = options.after(answer.iterations) else { return answer };
         let measured = Measured::new(a, answer.reach());
         let calls = if measured.is_some() { 2 * N as u32 } else { 0 };
         let set = measured.as_ref().map_or(a, |measured| measured);
-        match run(self, set, measured.is_some()) {
+        match run(self, set, options, measured.is_some()) {
             Some(second) => second.or_wider(answer, calls),
             None => answer,
         }

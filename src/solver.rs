@@ -79,8 +79,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             Ok(None) => self.decide(&mut query),
             Err(failure) => return self.give_up(&mut query, failure),
         };
-        self.look_again(answer, set, |solver, set, measured| {
-            let (mut query, checked) = Query::new(set, q, radius, *options);
+        self.look_again(answer, set, options, |solver, set, options, measured| {
+            let (mut query, checked) = Query::new(set, q, radius, options);
             query.interrupt = interrupt;
             solver.polytope.reset();
             solver.sharpen(&mut query, checked, measured).then(|| solver.decide(&mut query))
@@ -124,8 +124,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_gauge(q);
         let answer = self.expand_only(Query::new(set, q, radius, *options));
-        self.look_again(answer, set, |solver, set, measured| {
-            solver.expand_sharper(Query::new(set, q, radius, *options), measured)
+        self.look_again(answer, set, options, |solver, set, options, measured| {
+            solver.expand_sharper(Query::new(set, q, radius, options), measured)
         })
     }
 

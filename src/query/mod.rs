@@ -39,6 +39,18 @@ impl<T: Real, const N: usize> Default for Options<T, N> {
     }
 }
 
+impl<T: Real, const N: usize> Options<T, N> {
+    /// What is left of the limit after so many iterations; `None`: nothing.
+    pub(crate) fn after(&self, iterations: u32) -> Option<Self> {
+        let left = self.limit().saturating_sub(iterations);
+        (left > 0).then_some(Options { max_iterations: left, ..*self })
+    }
+
+    fn limit(&self) -> u32 {
+        if self.max_iterations == 0 { MAX_ITERATIONS } else { self.max_iterations }
+    }
+}
+
 /// Points added when the caller sets no limit.
 const MAX_ITERATIONS: u32 = 50_000;
 
@@ -444,8 +456,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Counts an iteration; tells why there must be none when a limit is reached.
     pub fn exhausted(&mut self) -> Option<Stop> {
-        let limit = if self.options.max_iterations == 0 { MAX_ITERATIONS } else { self.options.max_iterations };
-        if self.stopped.is_none() && self.iterations >= limit {
+        if self.stopped.is_none() && self.iterations >= self.options.limit() {
             self.stopped = Some(Stop::Iterations);
         }
         if self.stopped.is_none() && self.interrupt.is_some_and(|interrupt| interrupt()) {
