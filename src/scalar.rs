@@ -95,18 +95,18 @@ macro_rules! real {
 real!(f32, libm::sqrtf, 1e-4, 4097.0, 0x7F80_0000);
 real!(f64, libm::sqrt, 1e-6, 134_217_729.0, 0x7FF0_0000_0000_0000);
 
-/// Euclidean norm, also where squares underflow.
+/// Euclidean norm, also where squares under- or overflow.
 #[inline(always)]
 pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
     let squared = v.dot(v);
-    if squared > T::SAFE_SQUARE { squared.root() } else { small_norm(v) }
+    if squared > T::SAFE_SQUARE && squared <= T::HUGE { squared.root() } else { far_norm(v) }
 }
 
-/// v / |v| for v not zero, also where squares underflow.
+/// v / |v| for v not zero, also where squares under- or overflow.
 #[inline]
 pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     let squared = v.dot(v);
-    if squared > T::SAFE_SQUARE {
+    if squared > T::SAFE_SQUARE && squared <= T::HUGE {
         return v * (T::one() / squared.root());
     }
     let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
@@ -116,7 +116,7 @@ pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
 
 #[cold]
 #[inline(never)]
-fn small_norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+fn far_norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
     let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
     if !(largest > T::zero()) {
         return T::zero();
