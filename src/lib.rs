@@ -24,7 +24,7 @@
 //!
 //! assert!(depth.lower <= 0.05 && 0.05 <= depth.upper); // the post is 5 cm inside the crate
 //! assert!((depth.normal - Vector::from([1.0, 0.0, 0.0])).amax() < 1e-6); // and leaves along x
-//! # Ok::<(), qdist::support::ShapeError>(())
+//! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
 //! # How it works
