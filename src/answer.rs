@@ -14,7 +14,7 @@ pub enum Outcome {
     /// Stopped early: d < the threshold.
     Below,
     /// The origin is outside A: `upper` < 0, and the bracket is that of minus the Euclidean distance. It is wider than asked for when
-    /// an iteration limit or the scalar type ended the search for the distance.
+    /// a limit, a deadline or the scalar type ended the search for the distance.
     Separated,
     /// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
     Touching,

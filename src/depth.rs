@@ -10,10 +10,12 @@
 //! which is d_Q(M) for the unit ball Q; where the bodies are apart, the same minimum is minus their distance.
 //! The minimiser u points from A to B.
 
+use core::fmt;
+
 use crate::NOT_FINITE;
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
-use crate::query::{Options, Query};
+use crate::query::{Options, Query, are_lengths};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
 use crate::support::{Failure, Support, Symmetry, one_by_one};
@@ -30,6 +32,17 @@ pub enum BodyError {
     /// The matrix is not a rotation: |R^T R - I| > 1e-4 in some entry, or det R < 0.
     Rotation,
 }
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NonFinite => "a coordinate of the body's pose is NaN or infinite",
+            Self::Rotation => "the matrix of the body's pose is not a rotation to within 1e-4",
+        })
+    }
+}
+
+impl core::error::Error for BodyError {}
 
 /// A set placed in the world: x -> rotation x + translation.
 #[derive(Clone, Copy)]
@@ -81,6 +94,10 @@ impl<'a, T: Real> Body<'a, T> {
     /// from there: the shape's own word, else half the diagonal of the box that six support calls draw around it.
     fn anchor(&self) -> Result<Anchor<T>, Failure> {
         let mut anchor = self.core_anchor()?;
+        // What the shape says of itself. (Sums would hide a negative length.)
+        if !are_lengths(&[self.ball, self.inflation, anchor.extent, anchor.error]) {
+            return Err(Failure(NOT_FINITE));
+        }
         anchor.extent += self.inflation;
         anchor.error += T::count(8) * T::ROUNDOFF * self.inflation;
         Ok(anchor)
@@ -88,32 +105,36 @@ impl<'a, T: Real> Body<'a, T> {
 
     fn core_anchor(&self) -> Result<Anchor<T>, Failure> {
         if let Some((center, extent)) = self.shape.center() {
-            return Ok(Anchor { center: Some(center), extent, error: self.shape.error() });
+            if !finite(&center) {
+                return Err(Failure(NOT_FINITE));
+            }
+            return Ok(Anchor { center: Some(center), extent, error: self.shape.error(), calls: 0 });
         }
         let known = self.shape.extent();
-        if known > T::zero() {
-            return Ok(Anchor { center: None, extent: known, error: self.shape.error() });
+        if known != T::zero() {
+            return Ok(Anchor { center: None, extent: known, error: self.shape.error(), calls: 0 });
         }
         let mut corner = Vector::<T, 3>::zeros();
         for i in 0..3 {
             for sign in [T::one(), -T::one()] {
                 let mut axis = Vector::<T, 3>::zeros();
                 axis[i] = sign;
-                // Written so that NaN is kept.
-                let reach = self.shape.support(&axis)?[i].abs();
+                // Without shortcuts, which may fall short. Written so that NaN is kept.
+                let reach = self.shape.exhaustive(&axis)?.0[i].abs();
                 corner[i] = if reach < corner[i] { corner[i] } else { reach };
             }
         }
         let extent = norm(&corner);
         // What `Support::error` would be, had the shape known its extent.
         let error = self.shape.error().at_least(T::count(48) * T::ROUNDOFF * extent);
-        if extent.finite() { Ok(Anchor { center: None, extent, error }) } else { Err(Failure(NOT_FINITE)) }
+        Ok(Anchor { center: None, extent, error, calls: 6 })
     }
 
     /// The support point relative to the placed anchor.
     fn farthest(&self, u: &Vector<T, 3>, anchor: &Anchor<T>, exhaustive: bool) -> Result<Vector<T, 3>, Failure> {
         let local = self.rotation.tr_mul(u);
-        let point = if exhaustive { self.shape.exhaustive(&local) } else { self.shape.support(&local) };
+        let point =
+            if exhaustive { self.shape.exhaustive(&local).map(|(point, _)| point) } else { self.shape.support(&local) };
         let [x, y, z] = match &point {
             Ok(p) => one_by_one(p).into(),
             Err(failure) => return Err(*failure),
@@ -146,6 +167,8 @@ struct Anchor<T: Real> {
     extent: T,
     /// Error of the shape's support function.
     error: T,
+    /// Calls of the support function that it took to find out.
+    calls: u32,
 }
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
@@ -246,8 +269,8 @@ impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
     fn support_with_witness(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
         self.sample(u, false)
     }
-    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        Ok(self.sample(u, true)?.0)
+    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+        self.sample(u, true)
     }
     fn has_shortcuts(&self) -> bool {
         self.a.shape.has_shortcuts() || self.b.shape.has_shortcuts()
@@ -283,7 +306,8 @@ pub struct Depth<T> {
     pub dimension: usize,
     /// Points added, in expansion and distance iteration.
     pub iterations: u32,
-    /// Calls of each body's support function.
+    /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
+    /// know its extent.
     pub support_calls: u32,
     /// Vertices used.
     pub vertices: usize,
@@ -318,14 +342,17 @@ impl<T: Real> Solver<'_, T, 3> {
             Err(failure) => return Depth::failed(failure),
         };
         let ball = Ball::unit();
+        let mut calls = pair.on_a.calls.max(pair.on_b.calls);
         if let Some(axis) = pair.common_axis() {
             let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
             query.interrupt = interrupt;
+            query.count_calls(calls);
             if checked.and_then(|()| query.normalize()).is_ok()
                 && let Some(answer) = self.solve_meridian(&mut query, &axis)
             {
                 return Depth::new(&answer, &pair);
             }
+            calls = query.support_calls();
         }
         let mut options = *options;
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
@@ -334,6 +361,7 @@ impl<T: Real> Solver<'_, T, 3> {
         let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), options);
         query.seeks_rivals = false;
         query.interrupt = interrupt;
+        query.count_calls(calls);
         let answer = self.expand_only((query, checked));
         Depth::new(&answer, &pair)
     }

@@ -20,6 +20,8 @@
 //!
 //! The solver's bracket rests on these two lines and on nothing else.
 
+use core::fmt;
+
 use crate::scalar::{Real, Vector};
 
 mod combine;
@@ -29,6 +31,7 @@ mod load;
 mod shapes;
 mod solids;
 
+pub(crate) use combine::total;
 pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
@@ -47,6 +50,17 @@ pub use solids::{Capsule, Cone, Cylinder};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failure(pub i32);
 
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            crate::NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
+            code => write!(f, "a support or gauge function failed with code {code}"),
+        }
+    }
+}
+
+impl core::error::Error for Failure {}
+
 /// Rotations that leave a set in R^3 unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
@@ -59,6 +73,9 @@ pub enum Symmetry {
 }
 
 /// A compact convex set `core + radius * ball` in R^N, given by its support mapping.
+///
+/// Every number is checked: a query of a set that returns a point, witness or center that is not finite, or states a length that is negative or
+/// not finite, ends with outcome `SupportFailed`, code [`NOT_FINITE`](crate::NOT_FINITE) and a bracket that says nothing false.
 ///
 /// Implement it for your own shapes: only [`support`](Support::support) is required. All lengths are in
 /// the caller's unit; the solver is invariant to it.
@@ -76,10 +93,11 @@ pub trait Support<T: Real, const N: usize> {
         Ok((p, p))
     }
 
-    /// Support without shortcuts, for the direction that is about to be reported. Only sets whose
-    /// [`support`](Support::support) takes shortcuts (hill climbing) differ.
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        self.support(u)
+    /// Point and witness without shortcuts, for the direction that is about to be reported. Only sets whose
+    /// [`support`](Support::support) takes shortcuts (hill climbing) differ. Both come from one call, as those of
+    /// [`support_with_witness`](Support::support_with_witness) do: a shortcut may see another point, whose witness this is not.
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        self.support_with_witness(u)
     }
 
     /// Does [`exhaustive`](Support::exhaustive) differ from [`support`](Support::support)?

@@ -6,7 +6,7 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{aligned, ask, coordinates, is_mirrored, lengths, shared};
+use super::super::generic::{aligned, ask, coordinates, gaps, is_mirrored, lengths, put, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
@@ -53,6 +53,8 @@ pub struct qdist_set_f32 {
     pub dimension: u32,
 }
 
+gaps!(qdist_set_f32, dimension..);
+
 /// A set in space with a pose: x -> rotation * x + translation.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -75,6 +77,8 @@ pub struct qdist_body_f32 {
     /// about one axis a plane problem.
     pub symmetry: u32,
 }
+
+gaps!(qdist_body_f32, set.dimension..rotation, symmetry..);
 
 impl qdist_set_f32 {
     /// Checks the numbers for dimension `N`.
@@ -110,9 +114,9 @@ impl<const N: usize> Support<f32, N> for CheckedSet {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.support, self.0.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f32, N>) -> Result<Vector<f32, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<f32, N>) -> Result<(Vector<f32, N>, Vector<f32, N>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }
+        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.exhaustive.is_some()
@@ -187,9 +191,9 @@ impl Support<f32, 3> for CheckedBody {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.set.support, self.0.set.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f32, 3>) -> Result<Vector<f32, 3>, Failure> {
+    fn exhaustive(&self, u: &Vector<f32, 3>) -> Result<(Vector<f32, 3>, Vector<f32, 3>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.set.exhaustive.is_some()
@@ -229,7 +233,7 @@ pub unsafe extern "C" fn qdist_body_set_f32(body: *mut qdist_body_f32, set: *con
         // SAFETY: what the header asks of the caller; the functions are not called here.
         unsafe { set.checked::<3>() }?;
         // SAFETY: checked.
-        unsafe { body.write(qdist_body_f32::at_origin(*set)) };
+        unsafe { put(body, qdist_body_f32::at_origin(*set)) };
         Ok(())
     };
     status(fill())

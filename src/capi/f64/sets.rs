@@ -5,7 +5,7 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{aligned, ask, coordinates, is_mirrored, lengths, shared};
+use super::super::generic::{aligned, ask, coordinates, gaps, is_mirrored, lengths, put, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
@@ -52,6 +52,8 @@ pub struct qdist_set_f64 {
     pub dimension: u32,
 }
 
+gaps!(qdist_set_f64, dimension..);
+
 /// A set in space with a pose: x -> rotation * x + translation.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -74,6 +76,8 @@ pub struct qdist_body_f64 {
     /// about one axis a plane problem.
     pub symmetry: u32,
 }
+
+gaps!(qdist_body_f64, set.dimension..rotation, symmetry..);
 
 impl qdist_set_f64 {
     /// Checks the numbers for dimension `N`.
@@ -109,9 +113,9 @@ impl<const N: usize> Support<f64, N> for CheckedSet {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.support, self.0.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f64, N>) -> Result<Vector<f64, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, N>) -> Result<(Vector<f64, N>, Vector<f64, N>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }
+        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.exhaustive.is_some()
@@ -186,9 +190,9 @@ impl Support<f64, 3> for CheckedBody {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.set.support, self.0.set.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<(Vector<f64, 3>, Vector<f64, 3>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.set.exhaustive.is_some()
@@ -228,7 +232,7 @@ pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *con
         // SAFETY: what the header asks of the caller; the functions are not called here.
         unsafe { set.checked::<3>() }?;
         // SAFETY: checked.
-        unsafe { body.write(qdist_body_f64::at_origin(*set)) };
+        unsafe { put(body, qdist_body_f64::at_origin(*set)) };
         Ok(())
     };
     status(fill())
