@@ -56,7 +56,7 @@ pub const QDIST_ERROR_CONTACT_FRICTION: qdist_status = 17;
 pub const QDIST_ERROR_CONTACT_CAP: qdist_status = 18;
 /// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
 pub const QDIST_ERROR_CONTACT_JACOBIAN: qdist_status = 19;
-/// A contact's wrench is too large: a position or friction that is huge for the torque scale.
+/// A contact's wrench is too large: a position or friction that is huge for the torque scale. Or a primitive's or pyramid's is not finite.
 pub const QDIST_ERROR_CONTACT_WRENCH: qdist_status = 20;
 /// The reference point is not finite, or the torque scale is not a positive number of usual size.
 pub const QDIST_ERROR_FRAME: qdist_status = 21;
@@ -80,6 +80,8 @@ pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 29;
 pub const QDIST_ERROR_ALLOCATOR: qdist_status = 30;
 /// A defect of the library, which went no further. Please report it.
 pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
+/// A callback uses the solver, pair or tracker that is calling it.
+pub const QDIST_ERROR_BUSY: qdist_status = 32;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -170,6 +172,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_MESH_NOT_SOLID => c"mesh bounds no solid",
         QDIST_ERROR_ALLOCATOR => c"allocator set or in use",
         QDIST_ERROR_INTERNAL => c"defect of the library",
+        QDIST_ERROR_BUSY => c"solver in use by the caller of the callback",
         _ => c"unknown status",
     }
     .as_ptr()
