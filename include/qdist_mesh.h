@@ -26,7 +26,8 @@
  * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs, and a tracker for its certificates; collision and distance
  *             queries allocate only when the memory of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
  * Threads     A mesh never changes and may be used by any number of threads. A pair or tracker serves one call at a time, from any thread.
- * Callbacks   must not unwind, longjmp, or use the pair or tracker that is calling them.
+ * Callbacks   must not unwind or longjmp, and must not use or free the pair or tracker that is calling them: to use it is QDIST_ERROR_BUSY, to free it
+ *             does nothing.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
  *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with
@@ -217,7 +218,7 @@ typedef struct {
 // Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
 qdist_status qdist_mesh_pair_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_pair **pair);
 
-// Frees a pair; NULL is nothing.
+// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
 void qdist_mesh_pair_free(qdist_mesh_pair *pair);
 
 // Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
@@ -489,7 +490,7 @@ qdist_status qdist_mesh_budget_default(qdist_mesh_budget *budget);
 // Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
 qdist_status qdist_mesh_tracker_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_tracker **tracker);
 
-// Frees a tracker; NULL is nothing.
+// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
 void qdist_mesh_tracker_free(qdist_mesh_tracker *tracker);
 
 // A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
