@@ -121,9 +121,11 @@ stack: lib
 	@$(CC) -std=gnu99 -O2 -Wall -Wextra -Iinclude ffi-tests/stack.c $(lib) -o $(out)/stack
 	@$(out)/stack
 
-figures: lib
+figures: lib lib-mesh
 	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures.c $(lib) -lm -o $(out)/figures
 	@$(out)/figures
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures_mesh.c $(lib_mesh) $(system_libs) -o $(out)/figures_mesh
+	@$(out)/figures_mesh
 
 # CHECK=--check makes a wrong or missing bracket an error.
 CASES ?= $(or $(wildcard ../shared/data/convex/*.txt),$(wildcard tests/data/*.txt))

@@ -1,5 +1,4 @@
-/* The times that the headers of the core and of grasps name, in microseconds on this machine: `make figures`. (Stack: `make stack`. Meshes:
- * `make bench-pdg`.) */
+/* The times that the headers of the core and of grasps name, in microseconds on this machine: `make figures`. (Stack: `make stack`.) */
 #define _POSIX_C_SOURCE 199309L
 #include "qdist_grasp.h"
 

@@ -96,7 +96,7 @@ typedef struct qdist_solver qdist_solver;
  * it concluded, the bracket holds. A plan says how. */
 
 // callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
+// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 #define QDIST_CALLBACK_NONFINITE (-2147483647 - 1)
 
 // Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
@@ -370,7 +370,7 @@ qdist_status qdist_solver_init6_f64(void *memory,
 // not necessarily of unit length. point: room for as many.
 //
 // Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-// INT32_MIN + 2. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 // points are equally far, any of them.
 typedef int32_t (*qdist_support_f64)(void *user, const double *direction, double *point);
 

@@ -12,13 +12,13 @@
 
 use core::fmt;
 
-use crate::NOT_FINITE;
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
 use crate::query::{Options, Query, are_lengths};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
 use crate::support::{Failure, Support, Symmetry, one_by_one};
+use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
 /// A 3 x 3 matrix.
@@ -200,7 +200,12 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
         let rounding = (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF;
         let error = (on_a.error + on_b.error + rounding) * T::of(1.01) + left;
-        Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error })
+        let extent = cores * T::of(1.01) + apart;
+        // (What the bodies are made of is finite.)
+        if !(extent.finite() && error.finite()) {
+            return Err(Failure(TOO_LARGE));
+        }
+        Ok(Pair { a, b, on_a, on_b, offset, extent, error })
     }
 
     fn sample(&self, u: &Vector<T, 3>, exhaustive: bool) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {

@@ -138,6 +138,8 @@ pub use workspace::Workspace;
 
 /// Failure code: a callback returned a value that is not finite.
 pub const NOT_FINITE: i32 = i32::MIN;
+/// Failure code: nothing that was returned is wrong, but the numbers are so large that arithmetic with them overflows.
+pub const TOO_LARGE: i32 = i32::MIN + 3;
 /// Failure code: an internal set has no points.
 pub(crate) const EMPTY: i32 = i32::MIN + 1;
 

@@ -60,7 +60,10 @@ impl<T: Real> Support<T, 3> for Sabotaged<T> {
                 let first = self.points[0];
                 self.points.iter().step_by(2).fold(first, |best, p| if p.dot(u) > best.dot(u) { *p } else { best })
             }
-            Sabotage::Short => exact * T::of(0.99),
+            Sabotage::Short => {
+                let middle = self.points.iter().sum::<Vector<T, 3>>() / T::count(self.points.len());
+                exact + (middle - exact) * T::of(0.01)
+            }
             Sabotage::Ties => self.points.iter().fold(exact, |best, p| if p.dot(u) >= best.dot(u) { *p } else { best }),
             Sabotage::Wild => self.points[(u[0].to_f64() * 1e6).abs() as usize % self.points.len()],
             Sabotage::Blind => self.points[0],

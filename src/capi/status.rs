@@ -131,7 +131,7 @@ pub const QDIST_PLAN_WARM: qdist_plan = 4;
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-/// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
+/// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 
 const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
@@ -218,6 +218,11 @@ pub(super) type Check<T = ()> = Result<T, qdist_status>;
 /// A check as the C caller sees it.
 pub(super) fn status(check: Check) -> qdist_status {
     check.err().unwrap_or(QDIST_OK)
+}
+
+/// Did arithmetic overflow, though no callback is to blame? Then nothing is written.
+pub(super) fn overflow(failure: i32) -> Check {
+    if failure == crate::TOO_LARGE { Err(QDIST_ERROR_NONFINITE) } else { Ok(()) }
 }
 
 pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {

@@ -11,7 +11,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
     /// shortcuts are then over for this query.
     pub fn verify(&mut self) -> Result<bool, Failure> {
-        if self.exhaustive || !self.a.has_shortcuts() {
+        if !self.takes_shortcuts() {
             return Ok(true);
         }
         self.exhaustive = true;
@@ -25,6 +25,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         self.rival = None;
         self.note(&direction, height, &point)?;
         Ok(false)
+    }
+
+    /// May a support call still be answered by a shortcut?
+    pub fn takes_shortcuts(&self) -> bool {
+        !self.exhaustive && self.a.has_shortcuts()
     }
 
     fn ask_without_shortcuts(&mut self, direction: &Vector<T, N>) -> Result<(Vector<T, N>, T), Failure> {

@@ -244,7 +244,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     fn see(&mut self, point: &Vector<T, N>) -> Result<(), Failure> {
         let squared = point.dot(point);
         if !squared.finite() {
-            return Err(Failure(crate::NOT_FINITE));
+            return Err(Failure(if finite(point) { crate::TOO_LARGE } else { crate::NOT_FINITE }));
         }
         if squared > self.reach * self.reach {
             self.reach = squared.root();

@@ -54,6 +54,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             crate::NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
+            crate::TOO_LARGE => f.write_str("the numbers are so large that arithmetic with them overflows"),
             code => write!(f, "a support or gauge function failed with code {code}"),
         }
     }

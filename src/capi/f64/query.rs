@@ -26,8 +26,8 @@ use super::super::generic::{
 };
 use super::super::handle::{self, Opened, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, outcome, plan, qdist_interrupt, qdist_outcome,
-    qdist_plan, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, outcome, overflow, plan, qdist_interrupt,
+    qdist_outcome, qdist_plan, qdist_status, status,
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
@@ -208,6 +208,7 @@ pub unsafe extern "C" fn qdist_depth3_f64(
             (_, _, Err(status)) => return Err(*status),
             (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),
         };
+        overflow(depth.failure)?;
         // SAFETY: checked.
         unsafe { put(result, from_depth(&depth)) };
         conclude(depth.outcome)
@@ -436,6 +437,7 @@ impl<const N: usize> Asked<'_, N> {
     /// Writes the result.
     #[inline(always)]
     pub fn conclude(&self, answer: &Answer<f64, N>) -> Check {
+        overflow(answer.failure)?;
         // SAFETY: `new` has checked it.
         unsafe { put(self.result, from_answer(answer, self.q.code(answer.failure))) };
         conclude(answer.outcome)

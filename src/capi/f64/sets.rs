@@ -22,7 +22,7 @@ use core::ffi::c_void;
 /// not necessarily of unit length. point: room for as many.
 ///
 /// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-/// INT32_MIN + 2. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+/// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 /// points are equally far, any of them.
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;

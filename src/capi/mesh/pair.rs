@@ -214,8 +214,8 @@ pub unsafe extern "C" fn qdist_mesh_pair_collides(
     })
 }
 
-/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some ten
-/// microseconds, and less where the pose has changed little.
+/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
+/// microseconds (`make figures`), and less where the pose has changed little.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_pair_distance(
     pair: *mut qdist_mesh_pair,

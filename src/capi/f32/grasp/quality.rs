@@ -7,7 +7,7 @@
 use super::super::super::generic::{aligned, array, gaps, known_size, padded, put, shared};
 use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
 use super::super::super::handle::{self, qdist_solver};
-use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
+use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
 use super::super::gauges::{CheckedGauge, qdist_gauge_f32};
 use super::super::query::{convert, from_answer, qdist_options_f32, qdist_result_f32};
 use super::super::sets::qdist_set_f32;
@@ -105,6 +105,7 @@ pub unsafe extern "C" fn qdist_best_of6_f32(
         let checked = sets.iter().filter_map(|set| unsafe { set.checked::<6>() }.ok());
         let found = deadline.during(|interrupt| solver.best_of_until(checked, q.gauge(), &options, interrupt));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
+        overflow(found.answer.failure)?;
         let made = qdist_best_f32 {
             struct_size: size_of::<qdist_best_f32>() as u32,
             index: found.index as u32,
