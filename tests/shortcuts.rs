@@ -133,7 +133,8 @@ fn right<T: Real>(a: &Sabotaged<T>, b: &Sabotaged<T>, turns: [Matrix3<T>; 2], at
     let mut memory = Memory::new::<T, 3>(128, 256);
 
     let bodies = [Body::new(a, turns[0], at[0]).unwrap(), Body::new(b, turns[1], at[1]).unwrap()];
-    (a.calls.set(0), b.calls.set(0));
+    a.calls.set(0);
+    b.calls.set(0);
     let r = memory.solver::<T, 3>().depth(&bodies[0], &bodies[1], &options);
     assert_eq!(r.support_calls, a.calls.get().max(b.calls.get()), "{what}: calls");
     let (lower, upper) = (r.lower.to_f64(), r.upper.to_f64());
@@ -149,7 +150,8 @@ fn right<T: Real>(a: &Sabotaged<T>, b: &Sabotaged<T>, turns: [Matrix3<T>; 2], at
     // The same as a set made of sets.
     let (moved_a, moved_b) = (Rigid::new(a, turns[0], at[0]).unwrap(), Rigid::new(b, turns[1], at[1]).unwrap());
     let difference = Difference::new(moved_a, Scaled::new(moved_b, T::one()).unwrap());
-    (a.calls.set(0), b.calls.set(0));
+    a.calls.set(0);
+    b.calls.set(0);
     let r = memory.solver::<T, 3>().solve(&difference, &Ball::unit(), &options);
     assert_eq!((r.support_calls, a.calls.get()), (a.calls.get(), b.calls.get()), "{what}: calls");
     assert!(r.lower.to_f64() <= truth && truth <= r.upper.to_f64(), "{what}: solve");

@@ -400,7 +400,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Where dQ touches the plane that proves the upper bound (less the ball term): there A's core ends, if the bracket is narrow. `None`
     /// where Q does not tell.
     pub fn foot(&self) -> Option<Vector<T, N>> {
-        if self.ball.is_some() {
+        if self.ratio >= T::HUGE {
+            None // nothing bounds d from above yet
+        } else if self.ball.is_some() {
             Some(self.direction * self.height)
         } else {
             Some(self.mapping(&self.direction)? * self.ratio)
