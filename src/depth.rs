@@ -14,7 +14,7 @@ use core::fmt;
 
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
-use crate::query::{Options, Query, are_lengths};
+use crate::query::{Options, Query};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
 use crate::support::{Failure, Support, Symmetry, one_by_one};
@@ -94,8 +94,9 @@ impl<'a, T: Real> Body<'a, T> {
     /// from there: the shape's own word, else half the diagonal of the box that six support calls draw around it.
     fn anchor(&self) -> Result<Anchor<T>, Failure> {
         let mut anchor = self.core_anchor()?;
-        // What the shape says of itself. (Sums would hide a negative length.)
-        if !are_lengths(&[self.ball, self.inflation, anchor.extent, anchor.error]) {
+        // What the shape says of itself, NaN refused. (Sums would hide a negative length; infinite ones are found in them.)
+        let zero = T::zero();
+        if !((self.ball >= zero) & (self.inflation >= zero) & (anchor.extent >= zero) & (anchor.error >= zero)) {
             return Err(Failure(NOT_FINITE));
         }
         anchor.extent += self.inflation;
@@ -201,9 +202,9 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         let rounding = (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF;
         let error = (on_a.error + on_b.error + rounding) * T::of(1.01) + left;
         let extent = cores * T::of(1.01) + apart;
-        // (What the bodies are made of is finite.)
-        if !(extent.finite() && error.finite()) {
-            return Err(Failure(TOO_LARGE));
+        if !((extent < T::HUGE) & (error < T::HUGE)) {
+            let said = [on_a.extent, on_a.error, on_b.extent, on_b.error].iter().all(|x| x.finite());
+            return Err(Failure(if said { TOO_LARGE } else { NOT_FINITE }));
         }
         Ok(Pair { a, b, on_a, on_b, offset, extent, error })
     }

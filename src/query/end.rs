@@ -3,7 +3,7 @@
 use super::Query;
 use crate::answer::{Answer, Stop};
 use crate::bounds::Bracket;
-use crate::scalar::{Real, Vector, finite};
+use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
 use crate::support::Failure;
 
@@ -74,7 +74,9 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             Err(Failure(code)) => Stop::Failed(code),
         };
         // (The points have been checked as they came.)
-        let stop = if witness.corners.iter().all(|corner| finite(&corner.vertex.witness)) {
+        let numbers = witness.corners.iter().flat_map(|corner| corner.vertex.witness.iter());
+        // x - x is 0, unless x is infinite or NaN.
+        let stop = if numbers.fold(T::zero(), |sum, &x| sum + (x - x)) == T::zero() {
             stop
         } else {
             witness = Simplex::new(Vertex::empty());

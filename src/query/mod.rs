@@ -98,8 +98,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
 }
 
 /// Lengths as sets state them: finite and >= 0.
-pub(crate) fn are_lengths<T: Real>(list: &[T]) -> bool {
-    list.iter().all(|x| x.finite() && *x >= T::zero())
+fn are_lengths<T: Real>(list: &[T]) -> bool {
+    list.iter().fold(true, |all, &x| all & (x >= T::zero()) & (x <= T::HUGE))
 }
 
 impl<'q, T: Real, const N: usize> Query<'q, T, N> {
@@ -114,7 +114,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
         let ball = q.ball_radius();
         let per_ball = T::one() / ball.unwrap_or(T::one());
-        let sane = are_lengths(&[radius, extent, support_error, gauge_error, q.inner_radius()]);
+        let inner = if ball.is_some() { T::zero() } else { q.inner_radius() };
+        let sane = are_lengths(&[radius, extent, support_error, gauge_error, inner]);
         let sane = sane && per_ball.finite() && per_ball > T::zero();
         let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
         // (The answer to a query that is not run is made of them too.)
