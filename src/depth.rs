@@ -94,9 +94,10 @@ impl<'a, T: Real> Body<'a, T> {
     /// from there: the shape's own word, else half the diagonal of the box that six support calls draw around it.
     fn anchor(&self) -> Result<Anchor<T>, Failure> {
         let mut anchor = self.core_anchor()?;
-        // What the shape says of itself, NaN refused. (Sums would hide a negative length; infinite ones are found in them.)
+        // What the shape says of itself, NaN refused. (Sums would hide a negative length; what else is infinite is found in them.)
         let zero = T::zero();
-        if !((self.ball >= zero) & (self.inflation >= zero) & (anchor.extent >= zero) & (anchor.error >= zero)) {
+        let ball = (self.ball >= zero) & (self.ball <= T::HUGE) & (self.inflation >= zero);
+        if !(ball & (anchor.extent >= zero) & (anchor.error >= zero)) {
             return Err(Failure(NOT_FINITE));
         }
         anchor.extent += self.inflation;
