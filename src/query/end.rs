@@ -75,8 +75,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         };
         // (The points have been checked as they came.)
         let numbers = witness.corners.iter().flat_map(|corner| corner.vertex.witness.iter());
-        // x - x is 0, unless x is infinite or NaN.
-        let stop = if numbers.fold(T::zero(), |sum, &x| sum + (x - x)) == T::zero() {
+        // 0 x is 0, unless x is infinite or NaN.
+        let stop = if numbers.fold(T::zero(), |sum, &x| sum + x * T::zero()) == T::zero() {
             stop
         } else {
             witness = Simplex::new(Vertex::empty());
