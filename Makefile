@@ -19,7 +19,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack compare bench-dq bench-grasp bench-pdg clean
+.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg clean
 all: lib
 
 lib:
@@ -73,8 +73,9 @@ define c-tests
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bad_arguments.c $(3) -lm -o $(out)/$(1)/bad_arguments
 	@$(CC) $(CFLAGS_TEST) $(2) -DCARGO_VERSION='"$(version)"' ffi-tests/abi.c $(3) -lm -o $(out)/$(1)/abi
 	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/smoke_cpp.cpp $(3) -lm -o $(out)/$(1)/smoke_cpp
-	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/grasp.c $(3) -lm -o $(out)/$(1)/grasp
-	@for test in smoke bodies bad_arguments abi grasp smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
+	@for test in bodies grasp callbacks environment sweep; do \
+	    $(CC) $(CFLAGS_TEST) $(2) ffi-tests/$$test.c $(3) -lm -o $(out)/$(1)/$$test || exit 1; done
+	@for test in smoke bodies bad_arguments abi grasp callbacks environment sweep smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
 endef
 
 # $(call mesh-tests,directory,extra flags,library)
@@ -89,6 +90,7 @@ test-c: lib lib-std lib-mesh
 	$(need)
 	@echo "C and C++ tests with the freestanding library"
 	$(call c-tests,plain,,$(lib),)
+	@$(CC) $(CFLAGS_TEST) ffi-tests/float128.c -Wl,--no-gc-sections $(lib) -o $(out)/plain/float128 && $(out)/plain/float128
 	@echo "C and C++ tests of meshes with the hosted library"
 	$(call mesh-tests,plain,,$(lib_mesh))
 	@echo "README's examples in C"
@@ -98,7 +100,7 @@ test-c: lib lib-std lib-mesh
 	$(call mesh-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std))
 	@if command -v valgrind >/dev/null; then \
 	    echo "C and C++ tests under valgrind"; \
-	    for test in smoke bodies bad_arguments abi grasp smoke_cpp mesh mesh_cpp; do \
+	    for test in smoke bodies bad_arguments abi grasp callbacks smoke_cpp mesh mesh_cpp; do \
 	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
 	    done; \
 	else echo "SKIPPED: valgrind is not there"; fi
@@ -119,6 +121,12 @@ purity:
 stack: lib
 	@$(CC) -std=gnu99 -O2 -Wall -Wextra -Iinclude ffi-tests/stack.c $(lib) -o $(out)/stack
 	@$(out)/stack
+
+figures: lib lib-mesh
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures.c $(lib) -lm -o $(out)/figures
+	@$(out)/figures
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures_mesh.c $(lib_mesh) $(system_libs) -o $(out)/figures_mesh
+	@$(out)/figures_mesh
 
 # CHECK=--check makes a wrong or missing bracket an error.
 CASES ?= $(or $(wildcard ../shared/data/convex/*.txt),$(wildcard tests/data/*.txt))

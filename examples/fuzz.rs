@@ -434,7 +434,8 @@ fn fuzz_half_space(dice: &mut Dice) {
     let (mut a, mut frame) = (random_body(dice, scale, far), random_body(dice, scale, far));
     let length = dice.decade(-6.0, 6.0);
     let normal = if dice.chance(0.5) { [0.0, 0.0, 1.0] } else { dice.direction::<3>().map(|x| x * length) };
-    let offset = dice.pick(&[0.0, scale * length * dice.signed()]);
+    let aside = scale * length * dice.signed();
+    let offset = dice.pick(&[0.0, aside]);
     let place = CURRENT.lock().unwrap().0.clone();
     now_at(format!("{place}\nhalf space {normal:?} {offset}\nA = {a:?}\nframe = {frame:?}"));
     if dice.chance(0.5) {

@@ -73,7 +73,12 @@ static void Q(expect)(const Q(depth) *depth, double d, int line) {
     int i;
     check(depth->lower <= d && d <= depth->upper, "the bracket holds", __FILE__, line);
     check(depth->upper - depth->lower <= slack, "the bracket is narrow", __FILE__, line);
-    check(depth->outcome == (d > 0 ? QDIST_CONVERGED : d < 0 ? QDIST_SEPARATED : QDIST_TOUCHING), "the outcome fits", __FILE__, line);
+    if (d > 0) {
+        const int met = depth->upper - depth->lower <= WIDTH * depth->lower;
+        check(depth->outcome == (met ? QDIST_CONVERGED : QDIST_PRECISION), "the outcome fits", __FILE__, line);
+    } else {
+        check(depth->outcome == (d < 0 ? QDIST_SEPARATED : QDIST_TOUCHING), "the outcome fits", __FILE__, line);
+    }
     for (i = 0; i < 3; ++i) off = fmax(off, fabs(depth->point_a[i] - depth->point_b[i] - d * depth->normal[i]));
     check(off <= 4 * sqrt(slack), "the points are depth * normal apart", __FILE__, line);
 }

@@ -605,15 +605,124 @@ static void tracker(void) {
     CHECK(account.blocks == 0 && account.bytes == 0);
 }
 
+/* Callbacks that use, and free, what is calling them. */
+static struct {
+    qdist_mesh_pair *pair;
+    qdist_mesh_tracker *tracker;
+    qdist_status told;
+    int calls;
+} nested;
+
+static void enter_again(void) {
+    const qdist_mesh_pose pose = at(0, 0, 0);
+    qdist_mesh_depth depth;
+    qdist_mesh_distance distance;
+    uint32_t collides, count;
+    ++nested.calls;
+    depth.struct_size = sizeof depth;
+    if (nested.pair != NULL) {
+        nested.told = qdist_mesh_pair_collides(nested.pair, &pose, &collides);
+        CHECK(qdist_mesh_pair_distance(nested.pair, &pose, &distance) == nested.told);
+        CHECK(qdist_mesh_pair_contacts(nested.pair, &pose, 1, NULL, 0, &count) == nested.told);
+        CHECK(qdist_mesh_pair_depth(nested.pair, &pose, NULL, &depth) == nested.told);
+        qdist_mesh_pair_free(nested.pair);
+    }
+    if (nested.tracker != NULL) {
+        nested.told = qdist_mesh_tracker_update(nested.tracker, &pose, NULL, &depth);
+        CHECK(qdist_mesh_tracker_reset(nested.tracker) == nested.told);
+        depth.struct_size = sizeof depth, depth.pose = pose;
+        CHECK(qdist_mesh_tracker_merge(nested.tracker, &depth, NULL) == nested.told);
+        qdist_mesh_tracker_free(nested.tracker);
+    }
+}
+
+static int32_t nested_watch(void *user, const qdist_mesh_progress *progress) {
+    (void)user, (void)progress;
+    enter_again();
+    return 0;
+}
+
+static int32_t nested_late(void *user) {
+    (void)user;
+    enter_again();
+    return 0;
+}
+
+static void used_while_it_runs(void) {
+    qdist_mesh *mesh = box(1, 1, 1, 12);
+    const qdist_mesh_pose pose = at(0.1, 0.2, 1.7);
+    qdist_mesh_options options;
+    qdist_mesh_budget budget;
+    qdist_mesh_depth depth;
+    uint32_t collides = 7;
+    memset(&nested, 0, sizeof nested);
+    CHECK(qdist_mesh_pair_create(mesh, mesh, &nested.pair) == QDIST_OK);
+    CHECK(qdist_mesh_options_default(&options) == QDIST_OK && qdist_mesh_budget_default(&budget) == QDIST_OK);
+    options.watch = nested_watch;
+    depth.struct_size = sizeof depth;
+    CHECK(qdist_mesh_pair_depth(nested.pair, &pose, &options, &depth) == QDIST_OK);
+    CHECK(nested.calls > 0 && nested.told == QDIST_ERROR_BUSY && depth.upper >= 0.3 - 1e-12 && depth.upper < 0.301);
+    /* Free again, after an error too. */
+    CHECK(qdist_mesh_pair_depth(nested.pair, NULL, &options, &depth) == QDIST_ERROR_NULL);
+    CHECK(qdist_mesh_pair_collides(nested.pair, &pose, &collides) == QDIST_OK && collides == 1);
+    qdist_mesh_pair_free(nested.pair);
+
+    nested.pair = NULL, nested.calls = 0, nested.told = QDIST_OK;
+    CHECK(qdist_mesh_tracker_create(mesh, mesh, &nested.tracker) == QDIST_OK);
+    budget.late = nested_late;
+    CHECK(qdist_mesh_tracker_update(nested.tracker, &pose, &budget, &depth) == QDIST_OK);
+    CHECK(nested.calls > 0 && nested.told == QDIST_ERROR_BUSY && depth.lower <= 0.3 && depth.upper >= 0.3 - 1e-12);
+    CHECK(qdist_mesh_tracker_reset(nested.tracker) == QDIST_OK);
+    qdist_mesh_tracker_free(nested.tracker);
+    qdist_mesh_free(mesh);
+}
+
+/* Every byte of what the library fills is written, padding included. */
+static void written_whole(void) {
+    qdist_mesh *mesh = box(1, 1, 1, 12);
+    qdist_mesh_pair *pair = NULL;
+    const qdist_mesh_pose pose = at(0.1, 0.2, 1.7), apart = at(0, 0, 5);
+    struct {
+        qdist_mesh_options options;
+        qdist_mesh_budget budget;
+        qdist_mesh_depth depth;
+        qdist_mesh_distance distance;
+        qdist_mesh_contact contact;
+        qdist_mesh_report report;
+        qdist_mesh_mass mass;
+    } seen[2];
+    CHECK(qdist_mesh_pair_create(mesh, mesh, &pair) == QDIST_OK);
+    for (int i = 0; i < 2; ++i) {
+        uint32_t count = 0;
+        memset(&seen[i], i ? 0xC3 : 0x5A, sizeof seen[i]);
+        seen[i].depth.struct_size = sizeof seen[i].depth, seen[i].report.struct_size = sizeof seen[i].report;
+        CHECK(qdist_mesh_options_default(&seen[i].options) == QDIST_OK && qdist_mesh_budget_default(&seen[i].budget) == QDIST_OK);
+        CHECK(qdist_mesh_pair_depth(pair, &pose, NULL, &seen[i].depth) == QDIST_OK);
+        CHECK(qdist_mesh_pair_distance(pair, &apart, &seen[i].distance) == QDIST_OK);
+        CHECK(qdist_mesh_pair_contacts(pair, &apart, 4, &seen[i].contact, 1, &count) == QDIST_OK && count > 0);
+        CHECK(qdist_mesh_check(mesh, &seen[i].report) == QDIST_OK && qdist_mesh_integrate(mesh, &seen[i].mass) == QDIST_OK);
+    }
+    seen[1].depth.collision_queries = seen[0].depth.collision_queries;
+    CHECK(memcmp(&seen[0].options, &seen[1].options, sizeof seen[0].options) == 0);
+    CHECK(memcmp(&seen[0].budget, &seen[1].budget, sizeof seen[0].budget) == 0);
+    CHECK(memcmp(&seen[0].depth, &seen[1].depth, sizeof seen[0].depth) == 0);
+    CHECK(memcmp(&seen[0].distance, &seen[1].distance, sizeof seen[0].distance) == 0);
+    CHECK(memcmp(&seen[0].contact, &seen[1].contact, sizeof seen[0].contact) == 0);
+    CHECK(memcmp(&seen[0].report, &seen[1].report, sizeof seen[0].report) == 0);
+    CHECK(memcmp(&seen[0].mass, &seen[1].mass, sizeof seen[0].mass) == 0);
+    qdist_mesh_pair_free(pair);
+    qdist_mesh_free(mesh);
+}
+
 static void names(void) {
     qdist_mesh_outcome outcome;
     qdist_status status;
     for (outcome = QDIST_MESH_CONVERGED; outcome <= QDIST_MESH_INVALID; ++outcome)
         CHECK(strcmp(qdist_mesh_outcome_string(outcome), "unknown outcome") != 0);
     CHECK(strcmp(qdist_mesh_outcome_string(QDIST_MESH_INVALID + 1), "unknown outcome") == 0);
-    for (status = QDIST_ERROR_MESH_EMPTY; status <= QDIST_ERROR_INTERNAL; ++status)
+    for (status = QDIST_ERROR_MESH_EMPTY; status <= QDIST_ERROR_BUSY; ++status)
         CHECK(strcmp(qdist_status_string(status), "unknown status") != 0);
-    CHECK(strcmp(qdist_status_string(QDIST_ERROR_INTERNAL + 1), "unknown status") == 0);
+    CHECK(strcmp(qdist_status_string(QDIST_ERROR_BUSY + 1), "unknown status") == 0);
 }
 
 int main(void) {
@@ -625,6 +734,8 @@ int main(void) {
     certified();
     own_metric();
     tracker();
+    used_while_it_runs();
+    written_whole();
     names();
     CHECK(account.total > 0 && account.blocks == 0 && account.bytes == 0 && account.misfits == 0);
     return finish("mesh");

@@ -35,7 +35,14 @@
  *             that is made of it must be made anew.
  * Threads     All functions may be called from several threads at the same time. A solver serves one call at a time; shapes,
  *             sets and bodies are only read, and may be shared.
- * Callbacks   must not unwind, longjmp, or use the solver that is calling them.
+ * Callbacks   must not unwind or longjmp, and must not use the solver that is calling them, neither for a query within the query (which ends with
+ *             QDIST_ERROR_BUSY, and does no harm) nor by making a solver in its memory. Another solver is free to be used. Every number that a callback
+ *             returns is checked.
+ * Arithmetic  Brackets hold in every rounding mode (fesetround), and with subnormal numbers flushed to zero (FTZ, DAZ): `make test-c` tests all
+ *             combinations in double and float. In the usual mode all machines give the same bits; in another one the last digits differ.
+ *             Floating-point exceptions must be masked, as they are by default: compilers move divisions before the test that guards them, so that a query may
+ *             divide by zero, and throw the result away. Status flags (FE_DIVBYZERO, FE_INVALID, FE_INEXACT, ...) are left set; clear them
+ *             with feclearexcept if you look at them.
  * Units       Lengths are in your unit, all in the same one; there is no absolute tolerance anywhere, and results scale with the
  *             unit. A length may be at most 2e292 (float: 2e31). Squares of the sizes of a scene should be normal numbers:
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).
@@ -89,7 +96,7 @@ typedef struct qdist_solver qdist_solver;
  * it concluded, the bracket holds. A plan says how. */
 
 // callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
+// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 #define QDIST_CALLBACK_NONFINITE (-2147483647 - 1)
 
 // Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
@@ -170,7 +177,7 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
 #define QDIST_ERROR_CONTACT_JACOBIAN 19
 
-// A contact's wrench is too large: a position or friction that is huge for the torque scale.
+// A contact's wrench is too large: a position or friction that is huge for the torque scale. Or a primitive's or pyramid's is not finite.
 #define QDIST_ERROR_CONTACT_WRENCH 20
 
 // The reference point is not finite, or the torque scale is not a positive number of usual size.
@@ -206,8 +213,11 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // A defect of the library, which went no further. Please report it.
 #define QDIST_ERROR_INTERNAL 31
 
+// A callback uses the solver, pair or tracker that is calling it.
+#define QDIST_ERROR_BUSY 32
+
 // A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
-#define QDIST_ERROR_UNBOUNDED 32
+#define QDIST_ERROR_UNBOUNDED 33
 
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
@@ -369,7 +379,7 @@ qdist_status qdist_solver_init6_f64(void *memory,
 // not necessarily of unit length. point: room for as many.
 //
 // Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-// INT32_MIN + 2. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 // points are equally far, any of them.
 typedef int32_t (*qdist_support_f64)(void *user, const double *direction, double *point);
 
@@ -792,7 +802,7 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  *
  * Every query returns a bracket: lower <= d <= upper holds whatever the outcome, rounding included. It is as narrow as
  * the options ask for when the outcome is QDIST_CONVERGED, and that or as narrow as rounding allows for QDIST_TOUCHING; with
- * QDIST_SEPARATED it may be wider when an iteration limit ended the search. An end that is not known is
+ * QDIST_SEPARATED it may be wider when a limit, `interrupt` or the scalar type ended the search. An end that is not known is
  * -DBL_MAX or DBL_MAX (float: FLT_MAX).
  *
  * The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
@@ -816,7 +826,7 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
 typedef struct {
     // sizeof(qdist_options_f64).
     uint32_t struct_size;
-    // The most points to add, over all plans; 0: 50,000, less than a second in dimension 6.
+    // The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6 (`make figures`).
     uint32_t max_iterations;
     // NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     qdist_interrupt interrupt;
@@ -850,8 +860,7 @@ typedef struct {
     // Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
     // number is 0.)
     double normal[3];
-    // Witness points on A and B, in the world. For QDIST_CONVERGED, QDIST_TOUCHING and QDIST_SEPARATED (elsewhere they only
-    // prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
+    // Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     // after B has been moved, or the nearest points of separated bodies.
     double point_a[3];
     double point_b[3];
@@ -859,7 +868,8 @@ typedef struct {
     uint32_t dimension;
     // Points added.
     uint32_t iterations;
-    // Calls of each body's support function.
+    // Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
+    // state its extent.
     uint32_t support_calls;
     // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
     // QDIST_INTERRUPTED).

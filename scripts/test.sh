@@ -18,7 +18,9 @@ run() {
     name=$1
     shift
     printf '\n== %s\n' "$name"
+    begin=$(date +%s)
     { "$@" 2>&1; echo $? >"$log/$name.status"; } | tee "$log/$name.log"
+    echo "== $name took $(($(date +%s) - begin)) s"
     code=$(cat "$log/$name.status")
     p=$(sum passed) f=$(sum failed) s=$(($(sum ignored) + $(grep -c '^SKIPPED: ' "$log/$name.log")))
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))

@@ -14,7 +14,7 @@ pub enum Outcome {
     /// Stopped early: d < the threshold.
     Below,
     /// The origin is outside A: `upper` < 0, and the bracket is that of minus the Euclidean distance. It is wider than asked for when
-    /// an iteration limit or the scalar type ended the search for the distance.
+    /// a limit, a deadline or the scalar type ended the search for the distance.
     Separated,
     /// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
     Touching,
@@ -108,12 +108,12 @@ impl<T: Real, const N: usize> Answer<T, N> {
         if self.lower >= threshold { Some(true) } else { (self.upper < threshold).then_some(false) }
     }
 
-    /// This answer of a second look, or the first one where that is narrower, with the work of both and `calls` more support calls.
-    pub(crate) fn or_wider(self, first: Self, calls: u32) -> Self {
-        let calls = self.support_calls.saturating_add(first.support_calls).saturating_add(calls);
+    /// This answer of a second look, which has counted the calls of both, or the first one where that is narrower.
+    pub(crate) fn or_wider(self, first: &Self) -> Self {
+        let support_calls = self.support_calls;
         let iterations = self.iterations.saturating_add(first.iterations);
-        let better = if self.upper - self.lower <= first.upper - first.lower { self } else { first };
-        Answer { support_calls: calls, iterations, ..better }
+        let better = if self.upper - self.lower <= first.upper - first.lower { self } else { first.clone() };
+        Answer { support_calls, iterations, ..better }
     }
 
     /// The largest norm of a point of A in the answer.

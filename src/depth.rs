@@ -11,7 +11,8 @@
 //! The minimiser u points from A to B. In the plane everything is the same, with polygons for polyhedra; only bodies that share an
 //! axis of revolution, and the plan for them, are of space alone.
 
-use crate::NOT_FINITE;
+use core::fmt;
+
 use crate::answer::{Answer, Outcome};
 use crate::bounds::Axes;
 use crate::qset::Ball;
@@ -19,6 +20,7 @@ use crate::query::{Options, Query};
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::solver::Solver;
 use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
+use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
 pub(crate) mod half_space;
@@ -36,6 +38,17 @@ pub enum BodyError {
     /// The matrix is not a rotation: |R^T R - I| > 1e-4 in some entry, or det R < 0.
     Rotation,
 }
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NonFinite => "a coordinate of the body's pose is NaN or infinite",
+            Self::Rotation => "the matrix of the body's pose is not a rotation to within 1e-4",
+        })
+    }
+}
+
+impl core::error::Error for BodyError {}
 
 /// A set placed in the world, which is space or the plane (`N` = 2): x -> rotation x + translation. A rotation of the plane by
 /// the angle of cosine c and sine s is the matrix (c, -s; s, c).
@@ -95,24 +108,32 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     /// from there: the shape's own word, else half the diagonal of the box that support calls along the axes draw around it.
     fn anchor(&self) -> Result<Anchor<T, N>, Failure> {
         let mut anchor = self.core_anchor()?;
-        let error = T::count(8) * T::ROUNDOFF * self.inflation;
+        // What the shape says of itself, NaN refused. (Sums would hide a negative length; what else is infinite is found in them.)
+        let zero = T::zero();
+        let ball = (self.ball >= zero) & (self.ball <= T::HUGE) & (self.inflation >= zero);
+        if !(ball & (anchor.extent >= zero) & (anchor.error >= zero)) {
+            return Err(Failure(NOT_FINITE));
+        }
         anchor.extent += self.inflation;
-        anchor.error += error;
+        anchor.error += T::count(8) * T::ROUNDOFF * self.inflation;
         Ok(anchor)
     }
 
     fn core_anchor(&self) -> Result<Anchor<T, N>, Failure> {
         if let Some((center, extent)) = self.shape.center() {
-            return Ok(Anchor { center: Some(center), extent, error: self.shape.error() });
+            if !finite(&center) {
+                return Err(Failure(NOT_FINITE));
+            }
+            return Ok(Anchor { center: Some(center), extent, error: self.shape.error(), calls: 0 });
         }
         let known = self.shape.extent();
-        if known > T::zero() {
-            return Ok(Anchor { center: None, extent: known, error: self.shape.error() });
+        if known != T::zero() {
+            return Ok(Anchor { center: None, extent: known, error: self.shape.error(), calls: 0 });
         }
         let extent = norm(&self.corner()?);
         // What `Support::error` would be, had the shape known its extent.
         let error = self.shape.error().at_least(T::count(16 * N) * T::ROUNDOFF * extent);
-        if extent.finite() { Ok(Anchor { center: None, extent, error }) } else { Err(Failure(NOT_FINITE)) }
+        Ok(Anchor { center: None, extent, error, calls: 2 * N as u32 })
     }
 
     /// The box that support calls along the axes draw around the core.
@@ -122,8 +143,8 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
             for sign in [T::one(), -T::one()] {
                 let mut axis = Vector::<T, N>::zeros();
                 axis[i] = sign;
-                // Written so that NaN is kept.
-                let reach = self.shape.support(&axis)?[i].abs();
+                // Without shortcuts, which may fall short. Written so that NaN is kept.
+                let reach = self.shape.exhaustive(&axis)?.0[i].abs();
                 corner[i] = if reach < corner[i] { corner[i] } else { reach };
             }
         }
@@ -149,7 +170,8 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     /// The support point relative to the placed anchor.
     fn farthest(&self, u: &Vector<T, N>, anchor: &Anchor<T, N>, exhaustive: bool) -> Result<Vector<T, N>, Failure> {
         let local = self.rotation.tr_mul(u);
-        let point = if exhaustive { self.shape.exhaustive(&local) } else { self.shape.support(&local) };
+        let point =
+            if exhaustive { self.shape.exhaustive(&local).map(|(point, _)| point) } else { self.shape.support(&local) };
         let point = match &point {
             Ok(point) => one_by_one(point),
             Err(failure) => return Err(*failure),
@@ -217,6 +239,8 @@ struct Anchor<T: Real, const N: usize> {
     extent: T,
     /// Error of the shape's support function.
     error: T,
+    /// Calls of the support function that it took to find out.
+    calls: u32,
 }
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
@@ -253,7 +277,12 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
         let rounding = (cores * T::count(20) + apart * T::count(4)) * T::ROUNDOFF;
         let error = (on_a.error + on_b.error + rounding) * T::of(1.01) + left;
-        Ok(Pair { a, b, on_a, on_b, offset, extent: cores * T::of(1.01) + apart, error, extra: left })
+        let extent = cores * T::of(1.01) + apart;
+        if !((extent < T::HUGE) & (error < T::HUGE)) {
+            let said = [on_a.extent, on_a.error, on_b.extent, on_b.error].iter().all(|x| x.finite());
+            return Err(Failure(if said { TOO_LARGE } else { NOT_FINITE }));
+        }
+        Ok(Pair { a, b, on_a, on_b, offset, extent, error, extra: left })
     }
 
     /// The error along a unit vector, as [`axes`](Self::axes) tells it.
@@ -275,17 +304,24 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         Axes { errors, reach: spans * T::of(1.01) + offsets }
     }
 
-    /// The query for the depth.
+    /// Support calls of each body so far.
+    fn calls(&self) -> u32 {
+        self.on_a.calls.max(self.on_b.calls)
+    }
+
+    /// The query for the depth, after so many support calls.
     #[inline(always)]
     fn query<'q>(
         &'q self,
         ball: &'q Ball<T>,
+        calls: u32,
         options: &Options<T, N>,
         interrupt: Option<&'q dyn Fn() -> bool>,
     ) -> (Query<'q, T, N>, Result<(), Failure>) {
         let (mut query, checked) = Query::new(self, ball, self.radius(), *options);
         query.seeks_rivals = false;
         query.interrupt = interrupt;
+        query.count_calls(calls);
         (query, checked)
     }
 
@@ -362,8 +398,8 @@ impl<T: Real, const N: usize> Support<T, N> for Pair<'_, '_, T, N> {
     fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.sample(u, false)
     }
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.sample(u, true)?.0)
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        self.sample(u, true)
     }
     fn has_shortcuts(&self) -> bool {
         self.a.shape.has_shortcuts() || self.b.shape.has_shortcuts()
@@ -405,7 +441,8 @@ pub struct Depth<T, const N: usize = 3> {
     pub dimension: usize,
     /// Points added, in expansion and distance iteration.
     pub iterations: u32,
-    /// Calls of each body's support function.
+    /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
+    /// know its extent.
     pub support_calls: u32,
     /// Vertices used.
     pub vertices: usize,
@@ -440,17 +477,20 @@ impl<T: Real> Solver<'_, T, 3> {
             Ok(pair) => pair,
             Err(failure) => return Depth::failed(failure),
         };
+        let mut calls = pair.calls();
         if let Some(axis) = pair.common_axis() {
             let ball = Ball::unit();
             let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
             query.interrupt = interrupt;
+            query.count_calls(pair.calls());
             if checked.and_then(|()| query.normalize()).is_ok()
                 && let Some(answer) = self.solve_meridian(&mut query, &axis)
             {
                 return Depth::new(&answer, &pair);
             }
+            calls = query.support_calls();
         }
-        self.expand_pair(&pair, options, interrupt)
+        self.expand_pair(&pair, calls, options, interrupt)
     }
 }
 
@@ -490,7 +530,7 @@ impl<T: Real> Solver<'_, T, 2> {
             return depth;
         }
         match Pair::new(a, b) {
-            Ok(pair) => self.expand_pair(&pair, options, interrupt),
+            Ok(pair) => self.expand_pair(&pair, pair.calls(), options, interrupt),
             Err(failure) => Depth::failed(failure),
         }
     }
@@ -509,10 +549,11 @@ pub(crate) fn unbounded<T: Real, const N: usize>(
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
-    /// The depth of a pair by expansion, or by distance where that decides.
+    /// The depth of a pair by expansion, or by distance where that decides, after so many support calls.
     fn expand_pair(
         &mut self,
         pair: &Pair<'_, '_, T, N>,
+        calls: u32,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T, N> {
@@ -521,12 +562,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let answer = self.expand_only(pair.query(&ball, &options, interrupt));
+        let answer = self.expand_only(pair.query(&ball, calls, &options, interrupt));
         if !answer.outcome.is_open() {
             return Depth::new(&answer, pair);
         }
         let second = self.look_again_at_pair(pair, &answer, &options, interrupt);
-        Depth::new(&second.map_or(answer.clone(), |second| second.or_wider(answer, 0)), pair)
+        Depth::new(&second.unwrap_or(answer), pair)
     }
 
     /// A second look (module `second_look`), at each body by itself.
@@ -541,17 +582,21 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Option<Answer<T, N>> {
         let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
         let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
-        if a.is_none() && b.is_none() {
-            let is_flat = answer.outcome == Outcome::Degenerate;
+        let measured = a.is_some() || b.is_some();
+        if !measured {
             // (The first product says at once that the offset's own rounding leaves nothing to gain.)
             let n = &answer.direction;
             let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
             let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
-            return (is_flat || finer).then(|| self.expand_sharper(pair.query(&ball, options, interrupt), false))?;
+            if !finer && answer.outcome != Outcome::Degenerate {
+                return None;
+            }
         }
+        let calls = answer.support_calls.saturating_add(if measured { 2 * N as u32 } else { 0 });
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
-        self.expand_sharper(sharper.query(&ball, options, interrupt), true)
+        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), measured)?;
+        Some(second.or_wider(answer))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::bounds::Axes;
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
-use crate::support::{Failure, Support};
+use crate::support::{Failure, Support, total};
 
 /// Where the iteration ended.
 pub struct Nearest<T, const N: usize> {
@@ -123,8 +123,10 @@ impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
         let ball = self.ball(u);
         Ok((p + ball, w + ball))
     }
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.0.exhaustive(u)? + self.ball(u))
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let (p, w) = self.0.exhaustive(u)?;
+        let ball = self.ball(u);
+        Ok((p + ball, w + ball))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.has_shortcuts()
@@ -137,7 +139,7 @@ impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
         self.0.mirrored(signs)
     }
     fn error(&self) -> T {
-        self.0.error() + T::count(8 + N) * T::ROUNDOFF * self.0.radius()
+        total(self.0.error(), T::count(8 + N) * T::ROUNDOFF * self.0.radius())
     }
     fn errors(&self) -> Vector<T, N> {
         self.0.errors().add_scalar(T::count(8 + N) * T::ROUNDOFF * self.0.radius())

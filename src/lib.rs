@@ -24,7 +24,7 @@
 //!
 //! assert!(depth.lower <= 0.05 && 0.05 <= depth.upper); // the post is 5 cm inside the crate
 //! assert!((depth.normal - Vector::from([1.0, 0.0, 0.0])).amax() < 1e-6); // and leaves along x
-//! # Ok::<(), qdist::support::ShapeError>(())
+//! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
 //! # How it works
@@ -139,8 +139,10 @@ pub use workspace::Workspace;
 
 /// Failure code: a callback returned a value that is not finite.
 pub const NOT_FINITE: i32 = i32::MIN;
+/// Failure code: nothing that was returned is wrong, but the numbers are so large that arithmetic with them overflows.
+pub const TOO_LARGE: i32 = i32::MIN + 3;
 /// Failure code: a set without end ([`HalfSpace`](support::HalfSpace)) was asked for a farthest point.
-pub const UNBOUNDED: i32 = i32::MIN + 3;
+pub const UNBOUNDED: i32 = i32::MIN + 4;
 /// Failure code: an internal set has no points.
 pub(crate) const EMPTY: i32 = i32::MIN + 1;
 

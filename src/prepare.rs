@@ -4,6 +4,8 @@
 //! inside, facet F is the dual point y_F = n_F / (n_F.(v - c)), and p lies outside exactly when the largest y_F.(p - c)
 //! is above 1. A linear function on the (dual) polytope has no local maxima, so walking to better neighbours finds it.
 
+use core::fmt;
+
 use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::scalar::{Real, Vector};
 use crate::simplex::Vertex;
@@ -24,6 +26,19 @@ pub enum GraphError {
     /// [`graph_len`](crate::support::graph_len) always suffices.
     Words,
 }
+
+impl fmt::Display for GraphError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Shape(error) => return fmt::Display::fmt(error, f),
+            Self::Flat => "the points of the hull lie in one plane",
+            Self::Capacity => "the solver has too few vertices or facets for the hull",
+            Self::Words => "the words are fewer than the hull's graph needs",
+        })
+    }
+}
+
+impl core::error::Error for GraphError {}
 
 impl<T: Real> Solver<'_, T, 3> {
     /// Computes the vertex graph of the hull of `points` into `words`, with this solver's memory as workspace.

@@ -30,10 +30,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         let Some(options) = options.after(answer.iterations) else { return answer };
         let measured = Measured::new(a, answer.reach());
-        let calls = if measured.is_some() { 2 * N as u32 } else { 0 };
+        let calls = answer.support_calls + if measured.is_some() { 2 * N as u32 } else { 0 };
         let set = measured.as_ref().map_or(a, |measured| measured);
         match run(self, set, options, measured.is_some()) {
-            Some(second) => second.or_wider(answer, calls),
+            Some(second) => {
+                Answer { support_calls: second.support_calls.saturating_add(calls), ..second }.or_wider(&answer)
+            }
             None => answer,
         }
     }

@@ -18,7 +18,7 @@ use crate::scalar::{Real, Vector, norm, unit};
 use crate::simplex::{Corner, Simplex, Vertex};
 use crate::solver::Solver;
 use crate::start::Start;
-use crate::support::{Failure, Support};
+use crate::support::{Failure, Support, total};
 use heapless::Vec;
 use nalgebra::SMatrix;
 
@@ -49,8 +49,9 @@ impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn S
         let (point, witness) = self.inner.support_with_witness(&(self.basis * u))?;
         Ok((self.basis.tr_mul(&point), self.basis.tr_mul(&witness)))
     }
-    fn exhaustive(&self, u: &Vector<T, K>) -> Result<Vector<T, K>, Failure> {
-        Ok(self.basis.tr_mul(&self.inner.exhaustive(&(self.basis * u))?))
+    fn exhaustive(&self, u: &Vector<T, K>) -> Result<(Vector<T, K>, Vector<T, K>), Failure> {
+        let (point, witness) = self.inner.exhaustive(&(self.basis * u))?;
+        Ok((self.basis.tr_mul(&point), self.basis.tr_mul(&witness)))
     }
     fn has_shortcuts(&self) -> bool {
         self.inner.has_shortcuts()
@@ -65,7 +66,7 @@ impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn S
         self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
     }
     fn error(&self) -> T {
-        self.inner.error() + self.blur
+        total(self.inner.error(), self.blur)
     }
 }
 
@@ -121,18 +122,32 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
-        let Some(span) = span(a, q, options) else {
-            return self.solve_until(a, q, options, interrupt);
+        let mut calls = 0;
+        let answer = match span(a, q, options, &mut calls) {
+            Some(span) => self.solve_within(a, q, &span, options, interrupt, &mut calls),
+            None => self.solve_until(a, q, options, interrupt),
         };
-        let answer = match span.dimension {
-            1 => solve_line(a, q, &span, options).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
-            2 if N > 2 => self.within::<2>(a, q, &span, options, interrupt),
-            3 if N > 3 => self.within::<3>(a, q, &span, options, interrupt),
-            4 if N > 4 => self.within::<4>(a, q, &span, options, interrupt),
-            5 if N > 5 => self.within::<5>(a, q, &span, options, interrupt),
+        Answer { support_calls: answer.support_calls.saturating_add(calls), ..answer }
+    }
+
+    /// The answer in A's span. Adds support calls that the answer does not count to `calls`.
+    fn solve_within(
+        &mut self,
+        a: &dyn Support<T, N>,
+        q: &dyn Gauge<T, N>,
+        span: &Span<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+        calls: &mut u32,
+    ) -> Answer<T, N> {
+        match span.dimension {
+            1 => solve_line(a, q, span, options, calls).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
+            2 if N > 2 => self.within::<2>(a, q, span, options, interrupt),
+            3 if N > 3 => self.within::<3>(a, q, span, options, interrupt),
+            4 if N > 4 => self.within::<4>(a, q, span, options, interrupt),
+            5 if N > 5 => self.within::<5>(a, q, span, options, interrupt),
             _ => self.solve_until(a, q, options, interrupt),
-        };
-        Answer { support_calls: answer.support_calls.saturating_add(span.support_calls), ..answer }
+        }
     }
 
     fn within<const K: usize>(
@@ -152,7 +167,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             max_iterations: options.max_iterations,
             guess: options.guess.map(|guess| basis.tr_mul(&guess)),
         };
-        let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, size(q)));
+        let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, span.gauge_size));
         widened(&narrow.solve_until(&a, &q, &options, interrupt), &basis)
     }
 }
@@ -195,7 +210,8 @@ struct Span<T, const N: usize> {
     tilt: T,
     /// Largest |a| seen in A.
     reach: T,
-    support_calls: u32,
+    /// Q lies in a ball of this radius.
+    gauge_size: T,
 }
 
 impl<T: Real, const N: usize> Span<T, N> {
@@ -211,30 +227,40 @@ impl<T: Real, const N: usize> Span<T, N> {
 }
 
 /// Q lies in a ball of the radius h_Q(e_1) + h_Q(-e_1) + ...
-fn size<T: Real, const N: usize>(q: &dyn Gauge<T, N>) -> T {
+fn size<T: Real, const N: usize>(q: &dyn Gauge<T, N>) -> Result<T, Failure> {
     let mut size = T::zero();
     for i in 0..N {
         for sign in [T::one(), -T::one()] {
             let mut axis = Vector::<T, N>::zeros();
             axis[i] = sign;
-            size += q.value(&axis).unwrap_or(T::zero());
+            size += q.value(&axis)?;
         }
     }
-    size
+    Ok(size)
 }
 
-/// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it.
+/// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it. Adds its support calls to `calls`.
 fn span<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn Gauge<T, N>,
     options: &Options<T, N>,
+    calls: &mut u32,
 ) -> Option<Span<T, N>> {
     let (mut query, checked) = Query::new(a, q, a.radius(), *options);
-    checked.and_then(|()| query.normalize()).ok()?;
+    let found = checked.and_then(|()| query.normalize()).ok().and_then(|()| span_seen(&mut query, a, q));
+    *calls = calls.saturating_add(query.support_calls());
+    found
+}
+
+fn span_seen<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    a: &dyn Support<T, N>,
+    q: &dyn Gauge<T, N>,
+) -> Option<Span<T, N>> {
     let mut start = Start::new(query.first_direction());
     while start.missing() > 0 {
         let direction = start.direction();
-        let point = sample(&mut query, &start, &direction, false).ok()??.point;
+        let point = sample(query, &start, &direction, false).ok()??.point;
         let thin = (query.resolution() + query.margin()) * T::count(4);
         if !start.accept(&point, thin) {
             start.flat(&direction);
@@ -265,22 +291,33 @@ fn span<T: Real, const N: usize>(
     } else {
         tilt += T::count(4 * N) * (query.margin() + query.resolution()) / start.least_width();
     }
-    let (reach, support_calls) = (query.true_reach(), query.support_calls());
-    Some(Span { axes, dimension: start.dimension(), tilt, reach, support_calls })
+    // (Where a gauge fails, the query in space says so.)
+    let gauge_size = size(q).ok()?;
+    Some(Span { axes, dimension: start.dimension(), tilt, reach: query.true_reach(), gauge_size })
 }
 
-/// On a line, two directions are all there are.
+/// On a line, two directions are all there are. `None`, with its support calls added to `calls`, when that does not decide.
 fn solve_line<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn Gauge<T, N>,
     span: &Span<T, N>,
     options: &Options<T, N>,
+    calls: &mut u32,
 ) -> Option<Answer<T, N>> {
     let identity = SMatrix::<T, N, N>::identity();
-    let (a, q) = (span.seen(a, &identity, span.reach), span.seen(q, &identity, size(q)));
+    let (a, q) = (span.seen(a, &identity, span.reach), span.seen(q, &identity, span.gauge_size));
     let axis = unit(span.axes.first()?);
     let (mut query, checked) = Query::new(&a, &q, T::zero(), *options);
     checked.and_then(|()| query.normalize()).ok()?;
+    let answer = line_between(&mut query, &axis);
+    if answer.is_none() {
+        *calls = calls.saturating_add(query.support_calls());
+    }
+    answer
+}
+
+fn line_between<T: Real, const N: usize>(query: &mut Query<'_, T, N>, axis: &Vector<T, N>) -> Option<Answer<T, N>> {
+    let axis = *axis;
     let mut ends = Simplex::new(query.support(&axis).ok()?.0);
     ends.push(query.support(&-axis).ok()?.0);
     query.dimension = 1;

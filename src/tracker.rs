@@ -74,7 +74,7 @@ impl<T: Real, const N: usize> Tracker<T, N> {
     /// known, or where Q has no known inner radius.
     #[must_use]
     pub fn lower_after(&self, moved: T, q: &dyn Gauge<T, N>) -> T {
-        let inner = q.inner_radius();
+        let inner = Some(q.inner_radius()).filter(|inner| inner.finite()).unwrap_or(T::zero());
         if !(self.lower > -T::HUGE) || !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
             return -T::HUGE;
         }

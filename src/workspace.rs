@@ -4,6 +4,7 @@ use crate::polytope::{Entry, Facet, Polytope};
 use crate::scalar::Real;
 use crate::simplex::Vertex;
 use crate::solver::Solver;
+use core::fmt;
 use core::mem::{MaybeUninit, align_of, size_of};
 
 /// The largest number of vertices or facets.
@@ -19,6 +20,18 @@ pub enum WorkspaceError {
     /// The memory is not aligned to [`Layout::ALIGN`].
     Alignment,
 }
+
+impl fmt::Display for WorkspaceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Capacity => "the capacity is below N + 1 vertices or 2 N facets, or above 65,535",
+            Self::Size => "the memory is too short for the solver",
+            Self::Alignment => "the memory is not aligned to 8 bytes",
+        })
+    }
+}
+
+impl core::error::Error for WorkspaceError {}
 
 /// Where vertices, facets and queue lie in one block of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -276,9 +276,9 @@ impl Support<f64, 3> for Lazy {
     fn support(&self, _: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
         Ok(Vector::zeros())
     }
-    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<(Vector<f64, 3>, Vector<f64, 3>), Failure> {
         self.calls.set(self.calls.get() + 1);
-        self.shape.support(u)
+        self.shape.support_with_witness(u)
     }
     fn has_shortcuts(&self) -> bool {
         true

@@ -56,6 +56,56 @@ pub unsafe fn array<'a, S>(pointer: *const S, length: Option<usize>) -> Check<&'
     Ok(unsafe { core::slice::from_raw_parts(pointer, length) })
 }
 
+/// A struct of the header: where it has bytes that belong to no field.
+pub trait Gaps {
+    /// Where they begin, and how many.
+    const GAPS: &'static [(usize, usize)];
+}
+
+/// `gaps!(type, field..next, last..)`: there may be a gap between these fields, and behind the last one. A field of a field is written with a dot.
+macro_rules! gaps {
+    ($type:ty, $($($from:ident).+ .. $($until:ident)?),*) => {
+        impl $crate::capi::generic::Gaps for $type {
+            const GAPS: &'static [(usize, usize)] = &[$({
+                let end = core::mem::offset_of!($type, $($from).+)
+                    + $crate::capi::generic::field_size(|all: &$type| &all.$($from).+);
+                (end, gaps!(@until $type, $($until)?) - end)
+            }),*];
+        }
+    };
+    (@until $type:ty, $until:ident) => { core::mem::offset_of!($type, $until) };
+    (@until $type:ty,) => { size_of::<$type>() };
+}
+pub(super) use gaps;
+
+/// The size of the field that a function picks.
+pub const fn field_size<S, F>(_: fn(&S) -> &F) -> usize {
+    size_of::<F>()
+}
+
+/// Writes a struct to the caller's memory, and zeros where it has no field: the compiler would leave there what happened to be on the stack.
+///
+/// # Safety
+/// The pointer is aligned and valid for writes.
+#[inline(always)]
+pub unsafe fn put<S: Gaps>(to: *mut S, value: S) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        to.write(value);
+        clear_gaps(to);
+    }
+}
+
+/// # Safety
+/// As for [`put`].
+#[inline(always)]
+pub unsafe fn clear_gaps<S: Gaps>(to: *mut S) {
+    for &(from, length) in S::GAPS {
+        // SAFETY: the caller's promise; the gap is in the struct.
+        unsafe { to.cast::<u8>().add(from).write_bytes(0, length) };
+    }
+}
+
 /// Is the struct of the version that this library knows?
 pub fn known_size(size: u32, known: usize) -> Check {
     if size as usize == known { Ok(()) } else { Err(QDIST_ERROR_STRUCT_SIZE) }
@@ -293,9 +343,9 @@ impl<T: Real> CallbackGauge<T> {
             for i in 0..N {
                 for sign in [T::one(), -T::one()] {
                     axis[i] = sign;
-                    // A value that is not finite ends the query when the solver meets one.
                     let value = gauge.ask(&axis);
-                    corner[i] = corner[i].at_least(value);
+                    // What is no value of a gauge makes the error NaN, and ends the query.
+                    corner[i] = if value >= T::zero() { corner[i].at_least(value) } else { T::of(f64::NAN) };
                     empty &= value == T::zero();
                 }
                 axis[i] = T::zero();

@@ -1,16 +1,19 @@
 //! A solver in the caller's memory: a header that says what it is, then the block that [`Layout`] describes.
 //!
 //! The block is initialised once; a call opens it in constant time. It holds no address, so the memory may be moved.
+//!
+//! While a call runs, the header's tag is another one: a callback that would use the solver that is calling it meets that, and an error.
 
 use super::generic::{aligned, not_null};
 use super::status::{
-    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
+    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_BUSY, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
     QDIST_ERROR_WORKSPACE_SIZE, from_workspace,
 };
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::workspace::{self, Layout};
 use core::ffi::c_void;
+use core::ops::{Deref, DerefMut};
 
 /// A solver: opaque, in the caller's memory.
 #[repr(C, align(8))]
@@ -24,6 +27,8 @@ pub struct qdist_solver {
 }
 
 const MAGIC: u32 = u32::from_le_bytes(*b"qdst");
+/// The same while a call uses it.
+const BUSY: u32 = u32::from_le_bytes(*b"qdsB");
 
 /// The block follows the header.
 const HEADER: usize = size_of::<qdist_solver>();
@@ -97,15 +102,48 @@ pub(super) unsafe fn init<T: Real, const N: usize>(
     Ok(())
 }
 
+/// A solver that is open for one call, at the end of which it is no longer busy.
+pub(super) struct Opened<'w, T, const N: usize> {
+    solver: Solver<'w, T, N>,
+    header: *mut qdist_solver,
+}
+
+impl<'w, T, const N: usize> Deref for Opened<'w, T, N> {
+    type Target = Solver<'w, T, N>;
+    #[inline(always)]
+    fn deref(&self) -> &Self::Target {
+        &self.solver
+    }
+}
+
+impl<T, const N: usize> DerefMut for Opened<'_, T, N> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.solver
+    }
+}
+
+impl<T, const N: usize> Drop for Opened<'_, T, N> {
+    #[inline(always)]
+    fn drop(&mut self) {
+        // SAFETY: the promise of `open`; nothing else refers to the header.
+        unsafe { (&raw mut (*self.header).magic).write(MAGIC) };
+    }
+}
+
 /// Opens a solver for one call. Constant time.
 ///
 /// # Safety
-/// `solver` is NULL or valid for reads of a header; if it was made by [`init`], its memory is unchanged since and
-/// not in use by another call for the life `'w`.
-pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver) -> Check<Solver<'w, T, N>> {
+/// `solver` is NULL or valid for reads and writes of a header; if it was made by [`init`], its memory is unchanged since and
+/// not in use by a call of another thread for the life `'w`.
+#[inline]
+pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver) -> Check<Opened<'w, T, N>> {
     aligned(solver)?;
     // SAFETY: aligned, and readable as the caller promises.
-    let header = unsafe { &*solver };
+    let header = unsafe { solver.read() };
+    if header.magic == BUSY {
+        return Err(QDIST_ERROR_BUSY);
+    }
     if header.magic != MAGIC {
         return Err(QDIST_ERROR_SOLVER);
     }
@@ -117,5 +155,8 @@ pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver
     }
     let layout = layout::<T, N>(header.max_vertices, header.max_facets).map_err(|_| QDIST_ERROR_SOLVER)?;
     // SAFETY: the header says that `init` wrote a block of this layout behind it.
-    Ok(unsafe { workspace::open(solver.cast::<u8>().add(HEADER), &layout) })
+    unsafe {
+        (&raw mut (*solver).magic).write(BUSY);
+        Ok(Opened { solver: workspace::open(solver.cast::<u8>().add(HEADER), &layout), header: solver })
+    }
 }

@@ -26,7 +26,8 @@
  * Memory      Create functions allocate, and so does qdist_mesh_pair_depth while it runs, and a tracker for its certificates; collision and distance
  *             queries allocate only when the memory of their pair must grow. See qdist_mesh_set_allocator. When there is no memory left the process is aborted.
  * Threads     A mesh never changes and may be used by any number of threads. A pair or tracker serves one call at a time, from any thread.
- * Callbacks   must not unwind, longjmp, or use the pair or tracker that is calling them.
+ * Callbacks   must not unwind or longjmp, and must not use or free the pair or tracker that is calling them: to use it is QDIST_ERROR_BUSY, to free it
+ *             does nothing.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
  *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with

@@ -4,6 +4,12 @@
 
 use core::panic::PanicInfo;
 
+// The compiler's own functions, which every static library brings along, were built for unwinding and name the function that would sort out an
+// unwinding stack. None unwinds. A program that uses one of them, for __float128 say, must link all the same: so the name is there, as
+// a weak one, so that another library may have it too.
+#[cfg(not(any(windows, target_vendor = "apple", target_family = "wasm")))]
+core::arch::global_asm!(".weak rust_eh_personality", ".set rust_eh_personality, 0");
+
 #[cfg(feature = "must-not-panic")]
 unsafe extern "C" {
     fn qdist_panic_is_reachable() -> !;

@@ -35,7 +35,14 @@
  *             that is made of it must be made anew.
  * Threads     All functions may be called from several threads at the same time. A solver serves one call at a time; shapes,
  *             sets and bodies are only read, and may be shared.
- * Callbacks   must not unwind, longjmp, or use the solver that is calling them.
+ * Callbacks   must not unwind or longjmp, and must not use the solver that is calling them, neither for a query within the query (which ends with
+ *             QDIST_ERROR_BUSY, and does no harm) nor by making a solver in its memory. Another solver is free to be used. Every number that a callback
+ *             returns is checked.
+ * Arithmetic  Brackets hold in every rounding mode (fesetround), and with subnormal numbers flushed to zero (FTZ, DAZ): `make test-c` tests all
+ *             combinations in double and float. In the usual mode all machines give the same bits; in another one the last digits differ.
+ *             Floating-point exceptions must be masked, as they are by default: compilers move divisions before the test that guards them, so that a query may
+ *             divide by zero, and throw the result away. Status flags (FE_DIVBYZERO, FE_INVALID, FE_INEXACT, ...) are left set; clear them
+ *             with feclearexcept if you look at them.
  * Units       Lengths are in your unit, all in the same one; there is no absolute tolerance anywhere, and results scale with the
  *             unit. A length may be at most 2e292 (float: 2e31). Squares of the sizes of a scene should be normal numbers:
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).

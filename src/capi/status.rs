@@ -56,7 +56,7 @@ pub const QDIST_ERROR_CONTACT_FRICTION: qdist_status = 17;
 pub const QDIST_ERROR_CONTACT_CAP: qdist_status = 18;
 /// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
 pub const QDIST_ERROR_CONTACT_JACOBIAN: qdist_status = 19;
-/// A contact's wrench is too large: a position or friction that is huge for the torque scale.
+/// A contact's wrench is too large: a position or friction that is huge for the torque scale. Or a primitive's or pyramid's is not finite.
 pub const QDIST_ERROR_CONTACT_WRENCH: qdist_status = 20;
 /// The reference point is not finite, or the torque scale is not a positive number of usual size.
 pub const QDIST_ERROR_FRAME: qdist_status = 21;
@@ -80,8 +80,10 @@ pub const QDIST_ERROR_MESH_NOT_SOLID: qdist_status = 29;
 pub const QDIST_ERROR_ALLOCATOR: qdist_status = 30;
 /// A defect of the library, which went no further. Please report it.
 pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
+/// A callback uses the solver, pair or tracker that is calling it.
+pub const QDIST_ERROR_BUSY: qdist_status = 32;
 /// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
-pub const QDIST_ERROR_UNBOUNDED: qdist_status = 32;
+pub const QDIST_ERROR_UNBOUNDED: qdist_status = 33;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -133,7 +135,7 @@ pub const QDIST_PLAN_WARM: qdist_plan = 4;
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
-/// number. Callbacks must not return it, nor INT32_MIN + 1 or INT32_MIN + 2.
+/// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 
 const _: () = assert!(QDIST_CALLBACK_NONFINITE == crate::NOT_FINITE);
@@ -174,6 +176,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_MESH_NOT_SOLID => c"mesh bounds no solid",
         QDIST_ERROR_ALLOCATOR => c"allocator set or in use",
         QDIST_ERROR_INTERNAL => c"defect of the library",
+        QDIST_ERROR_BUSY => c"solver in use by the caller of the callback",
         QDIST_ERROR_UNBOUNDED => c"half space where it cannot serve",
         _ => c"unknown status",
     }
@@ -226,6 +229,11 @@ pub(super) fn from_status(status: qdist_status) -> Check {
 /// A check as the C caller sees it.
 pub(super) fn status(check: Check) -> qdist_status {
     check.err().unwrap_or(QDIST_OK)
+}
+
+/// Did arithmetic overflow, though no callback is to blame? Then nothing is written.
+pub(super) fn overflow(failure: i32) -> Check {
+    if failure == crate::TOO_LARGE { Err(QDIST_ERROR_NONFINITE) } else { Ok(()) }
 }
 
 pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {

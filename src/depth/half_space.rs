@@ -38,7 +38,7 @@ use crate::query::Options;
 use crate::scalar::{Accumulator, Real, Vector, finite, norm};
 use crate::support::shapes::{check_numbers, largest};
 use crate::support::{Failure, ShapeError, Support};
-use crate::{NOT_FINITE, UNBOUNDED};
+use crate::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
 use nalgebra::SMatrix;
 
 /// The half space { x : normal.x <= offset }; in the plane, a half plane. The normal points out of it.
@@ -121,7 +121,7 @@ impl<T: Real, const N: usize> Unbounded<T, N> for HalfSpace<T, N> {
         };
         match found {
             Ok(found) if found.is_sound() => found.conclude(first, options),
-            Ok(_) => Depth::failed(Failure(NOT_FINITE)),
+            Ok(_) => Depth::failed(Failure(TOO_LARGE)),
             Err(failure) => Depth::failed(failure),
         }
     }
@@ -210,7 +210,11 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
             return Err(Failure(NOT_FINITE));
         }
         let (direction, astray) = self.downward(&a.rotation);
-        let point = if a.shape.has_shortcuts() { a.shape.exhaustive(&direction) } else { a.shape.support(&direction) }?;
+        let point =
+            if a.shape.has_shortcuts() { a.shape.exhaustive(&direction)?.0 } else { a.shape.support(&direction)? };
+        if !finite(&point) {
+            return Err(Failure(NOT_FINITE));
+        }
         let swell = direction * (a.inflation / norm(&direction));
         let relative = |frame: &Vector<T, N>| {
             Twofold::of(|i| {
@@ -240,7 +244,7 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
         };
         let normal = -self.normal.high * inverse;
         let on_a = relative(&Vector::zeros()).high + normal * a.ball;
-        Ok(Found { bracket, normal, on_a, on_b: on_a - normal * depth, calls: 1, outcome: None })
+        Ok(Found { bracket, normal, on_a, on_b: on_a - normal * depth, calls: 1 + anchor.calls, outcome: None })
     }
 
     /// The direction into the half space in the frame of a body, -R^T w, and a bound of how far it is off.

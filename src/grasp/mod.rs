@@ -168,6 +168,6 @@ fn ceiling<T: Real>() -> T {
 }
 
 /// All finite and not too large. NaN fails the comparison.
-fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
+pub(crate) fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
     numbers.all(|x| x.abs() <= ceiling())
 }

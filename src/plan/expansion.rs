@@ -54,8 +54,15 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             let tolerance = self.resolution_along(&normal);
             // On the boundary of A, as far as arithmetic can tell?
             let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
-            if let Some(stop) = self.verdict(query, key).or(final_facet) {
+            let verdict = self.verdict(query, key);
+            if let Some(stop) = verdict.or(final_facet) {
+                // That a shortcut does not push the facet out says little: it is asked again without.
+                let blind = verdict.is_none() && query.takes_shortcuts();
                 if !self.confirm(query)? {
+                    continue;
+                }
+                if blind {
+                    self.reconsider(query);
                     continue;
                 }
                 return end(stop);
@@ -74,11 +81,16 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         if query.verify()? {
             return Ok(true);
         }
+        self.reconsider(query);
+        Ok(false)
+    }
+
+    /// Queues all facets anew.
+    fn reconsider(&mut self, query: &mut Query<'_, T, N>) {
         query.forget_skipped();
         if let Some(lowest) = self.requeue(query.ratio()) {
             query.skip(lowest);
         }
-        Ok(false)
     }
 
     /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a

@@ -67,10 +67,11 @@ impl<T: Real> Ball<T> {
     /// The ball of radius `radius` > 0.
     ///
     /// # Errors
-    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] for radius 0.
+    /// [`ShapeError::Negative`], [`ShapeError::NonFinite`]; [`ShapeError::Empty`] for radius 0, or one so small that its inverse is infinite.
     pub fn new(radius: T) -> Result<Self, ShapeError> {
         BoxShape::new(Vector::<T, 1>::new(radius))?;
-        Ok(Self { radius: positive(radius)? })
+        let radius = positive(radius)?;
+        if (T::one() / radius).finite() { Ok(Self { radius }) } else { Err(ShapeError::Empty) }
     }
 
     /// The unit ball.

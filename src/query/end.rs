@@ -3,23 +3,20 @@
 use super::Query;
 use crate::answer::{Answer, Stop};
 use crate::bounds::Bracket;
-use crate::scalar::Real;
-use crate::simplex::Simplex;
+use crate::scalar::{Real, Vector};
+use crate::simplex::{Simplex, Vertex};
 use crate::support::Failure;
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
     /// shortcuts are then over for this query.
     pub fn verify(&mut self) -> Result<bool, Failure> {
-        if self.exhaustive || !self.a.has_shortcuts() {
+        if !self.takes_shortcuts() {
             return Ok(true);
         }
         self.exhaustive = true;
         let direction = self.direction;
-        self.support_calls = self.support_calls.saturating_add(1);
-        let point = self.a.exhaustive(&direction)? * self.scale;
-        self.see(&point)?;
-        let height = direction.dot(&point);
+        let (point, height) = self.ask_without_shortcuts(&direction)?;
         if height <= self.height {
             return Ok(true);
         }
@@ -30,6 +27,39 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         Ok(false)
     }
 
+    /// May a support call still be answered by a shortcut?
+    pub fn takes_shortcuts(&self) -> bool {
+        !self.exhaustive && self.a.has_shortcuts()
+    }
+
+    fn ask_without_shortcuts(&mut self, direction: &Vector<T, N>) -> Result<(Vector<T, N>, T), Failure> {
+        self.count_calls(1);
+        let point = self.a.exhaustive(direction)?.0 * self.scale;
+        self.see(&point)?;
+        Ok((point, direction.dot(&point)))
+    }
+
+    /// The rival too is reported only if it ties without shortcuts.
+    fn verify_rival(&mut self) -> Result<(), Failure> {
+        if let Some(direction) = self.rival()
+            && self.a.has_shortcuts()
+        {
+            let (_, height) = self.ask_without_shortcuts(&direction)?;
+            let ratio = self.quotient(&direction, height)?;
+            self.rival = self.rival.filter(|_| self.ties(ratio));
+        }
+        Ok(())
+    }
+
+    /// h_A / h_Q of a direction whose height is known; the largest number where Q has no extent that way.
+    fn quotient(&self, direction: &Vector<T, N>, height: T) -> Result<T, Failure> {
+        if self.apart {
+            return Ok(height);
+        }
+        let gauge = self.gauge(direction)?;
+        Ok(if gauge > self.gauge_error { (height + self.bounds.radius) / gauge } else { T::HUGE })
+    }
+
     /// The answer for this stop, lower bound and evidence; whoever used memory adds how much.
     pub fn answer(&mut self, stop: Stop, lower: T, mut witness: Simplex<T, N>) -> Answer<T, N> {
         let stop = match self.verify() {
@@ -38,6 +68,19 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
                 (self.height, self.gauge) = (T::HUGE, T::one());
                 Stop::Failed(code)
             }
+        };
+        let stop = match self.verify_rival() {
+            Ok(()) => stop,
+            Err(Failure(code)) => Stop::Failed(code),
+        };
+        // (The points have been checked as they came.)
+        let numbers = witness.corners.iter().flat_map(|corner| corner.vertex.witness.iter());
+        // 0 x is 0, unless x is infinite or NaN.
+        let stop = if numbers.fold(T::zero(), |sum, &x| sum + x * T::zero()) == T::zero() {
+            stop
+        } else {
+            witness = Simplex::new(Vertex::empty());
+            Stop::Failed(crate::NOT_FINITE)
         };
         let lower = self.floored(lower);
         let upper = self.upper();
@@ -69,7 +112,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             direction: self.direction,
             support: (self.point + self.direction * self.bounds.radius) / self.scale,
             gauge: self.gauge,
-            rival: self.rival(),
+            rival: self.rival().filter(|_| !matches!(stop, Stop::Failed(_))),
             witness,
             plan: self.plan,
             dimension: self.dimension,

@@ -111,8 +111,13 @@ pub(crate) struct Query<'q, T, const N: usize> {
     pub interrupt: Option<&'q dyn Fn() -> bool>,
 }
 
+/// Lengths as sets state them: finite and >= 0.
+fn are_lengths<T: Real>(list: &[T]) -> bool {
+    list.iter().fold(true, |all, &x| all & (x >= T::zero()) & (x <= T::HUGE))
+}
+
 impl<'q, T: Real, const N: usize> Query<'q, T, N> {
-    /// A query with `radius` as the ball term that is taken out of A. What the sets say of themselves is read once, here;
+    /// A query with `radius` as the ball term that is taken out of A. What the sets say of themselves is checked here;
     /// an error when one of these lengths is negative or not finite (then the query must not be run).
     pub fn new(
         a: &'q dyn Support<T, N>,
@@ -123,9 +128,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
         let ball = q.ball_radius();
         let per_ball = T::one() / ball.unwrap_or(T::one());
-        let sane = [radius, extent, support_error, gauge_error].iter().all(|x| x.finite() && *x >= T::zero());
+        let inner = if ball.is_some() { T::zero() } else { q.inner_radius() };
+        let sane = are_lengths(&[radius, extent, support_error, gauge_error, inner]);
         let sane = sane && per_ball.finite() && per_ball > T::zero();
         let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
+        // (The answer to a query that is not run is made of them too.)
+        let [radius, extent, support_error] = if sane { [radius, extent, support_error] } else { [T::zero(); 3] };
         let query = Query {
             a,
             q,
@@ -201,6 +209,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.support_calls
     }
 
+    /// Calls that were made before the query.
+    pub fn count_calls(&mut self, calls: u32) {
+        self.support_calls = self.support_calls.saturating_add(calls);
+    }
+
     /// Tells the query a lower bound of d that holds anyway, in the caller's units. (Positive ones end it earlier.)
     pub fn know(&mut self, lower: T) {
         if lower > T::zero() && lower < T::HUGE {
@@ -232,13 +245,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Asks A along a unit direction, and keeps the upper bound if it is the best.
     pub fn support(&mut self, direction: &Vector<T, N>) -> Result<(Vertex<T, N>, T), Failure> {
         self.support_calls = self.support_calls.saturating_add(1);
-        let (point, witness) = if self.exhaustive {
-            let point = self.a.exhaustive(direction)?;
-            let (_, witness) = self.a.support_with_witness(direction)?;
-            (point, witness)
-        } else {
-            self.a.support_with_witness(direction)?
-        };
+        let (point, witness) =
+            if self.exhaustive { self.a.exhaustive(direction)? } else { self.a.support_with_witness(direction)? };
         let (point, witness) =
             if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
         self.see(&point)?;
@@ -252,7 +260,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     fn see(&mut self, point: &Vector<T, N>) -> Result<(), Failure> {
         let squared = point.dot(point);
         if !squared.finite() {
-            return Err(Failure(crate::NOT_FINITE));
+            return Err(Failure(if finite(point) { crate::TOO_LARGE } else { crate::NOT_FINITE }));
         }
         if squared > self.reach * self.reach {
             self.reach = squared.root();
@@ -408,7 +416,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Where dQ touches the plane that proves the upper bound (less the ball term): there A's core ends, if the bracket is narrow. `None`
     /// where Q does not tell.
     pub fn foot(&self) -> Option<Vector<T, N>> {
-        if self.ball.is_some() {
+        if self.ratio >= T::HUGE {
+            None // nothing bounds d from above yet
+        } else if self.ball.is_some() {
             Some(self.direction * self.height)
         } else {
             Some(self.mapping(&self.direction)? * self.ratio)

@@ -213,8 +213,8 @@ impl<T: Real> Support<T, 3> for Hull<'_, T> {
         Ok(Vector::from(*p))
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        self.all.support(u)
+    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+        self.all.support_with_witness(u)
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -302,7 +302,7 @@ mod tests {
         for u in noise(2000, 5) {
             for scale in [1.0f32, 1e-22, 1e30] {
                 let u = Vector::from(u.map(|x| x * scale));
-                let (climbed, scanned) = (hull.support(&u).unwrap(), hull.exhaustive(&u).unwrap());
+                let (climbed, scanned) = (hull.support(&u).unwrap(), hull.exhaustive(&u).unwrap().0);
                 let height = |p: &Vector<f32, 3>| u.map(f64::from).dot(&p.map(f64::from));
                 let slack = f64::from(hull.error()) * u.map(f64::from).norm();
                 assert!(height(&climbed) >= height(&scanned) - slack, "{u} {climbed} {scanned}");
@@ -342,7 +342,7 @@ mod tests {
             for u in noise(100, 6) {
                 let p = hull.support(&Vector::from(u)).unwrap();
                 assert!(points.iter().any(|q| Vector::from(*q) == p));
-                assert_eq!(hull.exhaustive(&Vector::from(u)), all.support(&Vector::from(u)));
+                assert_eq!(hull.exhaustive(&Vector::from(u)), all.support_with_witness(&Vector::from(u)));
                 // Without a usable seed, it is the scan.
                 assert!(words.len() > 3 || p == all.support(&Vector::from(u)).unwrap());
             }

@@ -20,6 +20,8 @@
 //!
 //! The solver's bracket rests on these two lines and on nothing else.
 
+use core::fmt;
+
 pub use crate::depth::half_space::HalfSpace;
 use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
@@ -31,8 +33,8 @@ mod load;
 pub(crate) mod shapes;
 mod solids;
 
-pub(crate) use combine::Measured;
 pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
+pub(crate) use combine::{Measured, total};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
 #[cfg(feature = "capi")]
@@ -50,6 +52,19 @@ pub use solids::{Capsule, Cone, Cylinder};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failure(pub i32);
 
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            crate::NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
+            crate::TOO_LARGE => f.write_str("the numbers are so large that arithmetic with them overflows"),
+            crate::UNBOUNDED => f.write_str("a half space was asked for a farthest point"),
+            code => write!(f, "a support or gauge function failed with code {code}"),
+        }
+    }
+}
+
+impl core::error::Error for Failure {}
+
 /// Rotations that leave a set in R^3 unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
@@ -62,6 +77,9 @@ pub enum Symmetry {
 }
 
 /// A compact convex set `core + radius * ball` in R^N, given by its support mapping.
+///
+/// Every number is checked: a query of a set that returns a point, witness or center that is not finite, or states a length that is negative or
+/// not finite, ends with outcome `SupportFailed`, code [`NOT_FINITE`](crate::NOT_FINITE) and a bracket that says nothing false.
 ///
 /// Implement it for your own shapes: only [`support`](Support::support) is required. All lengths are in
 /// the caller's unit; the solver is invariant to it.
@@ -79,10 +97,11 @@ pub trait Support<T: Real, const N: usize> {
         Ok((p, p))
     }
 
-    /// Support without shortcuts, for the direction that is about to be reported. Only sets whose
-    /// [`support`](Support::support) takes shortcuts (hill climbing) differ.
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        self.support(u)
+    /// Point and witness without shortcuts, for the direction that is about to be reported. Only sets whose
+    /// [`support`](Support::support) takes shortcuts (hill climbing) differ. Both come from one call, as those of
+    /// [`support_with_witness`](Support::support_with_witness) do: a shortcut may see another point, whose witness this is not.
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        self.support_with_witness(u)
     }
 
     /// Does [`exhaustive`](Support::exhaustive) differ from [`support`](Support::support)?

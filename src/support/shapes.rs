@@ -11,6 +11,8 @@
 //! tests one sum that it has at hand, and takes a rescaled direction in a cold path when it is out of range. That
 //! branch is always predicted; scaling every direction would cost a division.
 
+use core::fmt;
+
 use super::load::one_by_one;
 use super::{Failure, Support, Symmetry};
 use crate::scalar::{Real, Vector};
@@ -29,6 +31,20 @@ pub enum ShapeError {
     /// A direction is zero.
     Direction,
 }
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Negative => "a size is negative",
+            Self::NonFinite => "a number is NaN, infinite or too large",
+            Self::Empty => "there are no points, or none but the origin",
+            Self::NotOrthonormal => "the matrix is farther than 1e-3 from orthonormal",
+            Self::Direction => "a direction is zero",
+        })
+    }
+}
+
+impl core::error::Error for ShapeError {}
 
 /// Squares and products below this lose digits to underflow: 8e-31 in `f32`, 8e-292 in `f64`.
 #[inline(always)]

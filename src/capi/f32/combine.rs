@@ -6,7 +6,7 @@
 
 use super::super::generic::{
     MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, is_mirrored, length,
-    shared, tiny,
+    lengths, put, shared, tiny,
 };
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
@@ -87,7 +87,7 @@ pub unsafe extern "C" fn qdist_set_join_f32(set: *mut qdist_set_f32, pair: *cons
             dimension: n as u32,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -115,6 +115,8 @@ pub unsafe extern "C" fn qdist_set_linear_f32(set: *mut qdist_set_f32, map: *con
         let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
         let own = inner.stated_error(linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f32 as SupportFn<f32>);
+        // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
+        let error = length((stretch * own + f32::count(4 * MAX_DIMENSION + 8) * f32::ROUNDOFF * reach) * 1.000001)?;
         let made = qdist_set_f32 {
             support: Some(qdist_linear_support_f32),
             exhaustive: shortcuts,
@@ -122,12 +124,11 @@ pub unsafe extern "C" fn qdist_set_linear_f32(set: *mut qdist_set_f32, map: *con
             user: map.cast_mut().cast(),
             radius: 0.0,
             extent: reach,
-            // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
-            error: (stretch * own + f32::count(4 * MAX_DIMENSION + 8) * f32::ROUNDOFF * reach) * 1.000001,
+            error,
             dimension: linear.rows,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -265,8 +266,10 @@ unsafe fn fill_pair(
         error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f32::ROUNDOFF * extent).max(tiny()),
         dimension: n as u32,
     };
+    // Sums of lengths that are legal may be too large.
+    lengths([made.radius, made.extent, made.error])?;
     // SAFETY: checked.
-    unsafe { set.write(made) };
+    unsafe { put(set, made) };
     Ok(())
 }
 

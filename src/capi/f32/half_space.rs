@@ -10,8 +10,8 @@
 //! the depth is that between the two planes. Where a pose is turned, and rounding does not tell whether the normals are
 //! opposite, upper is FLT_MAX, and lower holds in both cases.
 
-use super::super::generic::{aligned, shared};
-use super::super::status::{Check, QDIST_ERROR_UNBOUNDED, from_body, from_shape, qdist_status, status};
+use super::super::generic::{aligned, put, shared};
+use super::super::status::{Check, QDIST_ERROR_UNBOUNDED, from_body, from_shape, overflow, qdist_status, status};
 use super::query::{conclude, convert, from_depth, qdist_depth_f32};
 use super::sets::{CheckedBody, qdist_body_f32, qdist_set_f32};
 use crate::Body;
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn qdist_body_half_space_f32(
             dimension: 3,
         };
         // SAFETY: checked.
-        unsafe { body.write(qdist_body_f32 { unbounded: Some(answer), ..qdist_body_f32::at_origin(set) }) };
+        unsafe { put(body, qdist_body_f32 { unbounded: Some(answer), ..qdist_body_f32::at_origin(set) }) };
         Ok(())
     };
     status(fill())
@@ -110,8 +110,9 @@ unsafe extern "C" fn answer(
         };
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
         let depth = depth::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
+        overflow(depth.failure)?;
         // SAFETY: `qdist_depth3_f32` has checked it.
-        unsafe { result.cast::<qdist_depth_f32>().write(from_depth(&depth)) };
+        unsafe { put(result.cast::<qdist_depth_f32>(), from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())

@@ -6,7 +6,7 @@
 //! smaller of the two radii stays a ball, and is exact. Joins may be joined again. Where both bodies turn about the z axis of the join's frame (identity rotations and
 //! translations along z), so does the join, and two bodies on one axis are a plane problem.
 
-use super::super::generic::{aligned, shared, tiny};
+use super::super::generic::{aligned, put, shared, tiny};
 use super::super::status::{Check, QDIST_ERROR_UNBOUNDED, from_body, from_shape, qdist_status, status};
 use super::sets::{CheckedBody, arguments, qdist_body_f32, qdist_set_f32};
 use super::shapes::from_symmetry;
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn qdist_body_join_f32(body: *mut qdist_body_f32, join: *c
         // SAFETY: what the header asks of the caller; a measured extent may be infinite.
         unsafe {
             made.checked()?;
-            body.write(made);
+            put(body, made);
         }
         Ok(())
     };
@@ -110,7 +110,7 @@ unsafe fn ask(user: *mut c_void, direction: *const f32, point: *mut f32, exhaust
         let (join, u, room) = arguments::<qdist_join_f32, 3>(user, direction, point)?;
         (join.set()?, u, room)
     };
-    let farthest = if exhaustive { set.exhaustive(u) } else { set.support(u) };
+    let farthest = if exhaustive { set.exhaustive(u).map(|(point, _)| point) } else { set.support(u) };
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(farthest.map_err(|failure| failure.0)?.into()) };
     Ok(())

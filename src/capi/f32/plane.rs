@@ -8,10 +8,11 @@
 //! A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
 //! way: write { c, -s, s, c } for the cosine and sine that you have.
 
-use super::super::generic::{aligned, ask, coordinates, known_size, lengths, shared, tiny};
+use super::super::generic::{aligned, ask, coordinates, gaps, known_size, lengths, put, shared, tiny};
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, from_status, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, from_status, overflow, qdist_status,
+    status,
 };
 use super::super::symmetry::qdist_unbounded;
 use super::points::{self, qdist_points_f32};
@@ -43,6 +44,8 @@ pub struct qdist_body2_f32 {
     /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
 }
+
+gaps!(qdist_body2_f32, set.dimension..rotation, errors..unbounded, unbounded..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -120,9 +123,8 @@ impl qdist_body2_f32 {
     unsafe fn checked(&self) -> Check<&CheckedBody2> {
         // SAFETY: the caller's promise.
         unsafe { self.set.checked::<2>() }?;
-        lengths([self.spread, self.rolling_radius])?;
-        lengths(self.extents)?;
-        lengths(self.errors)?;
+        let [[a, b], [c, d]] = [self.extents, self.errors];
+        lengths([self.spread, self.rolling_radius, a, b, c, d])?;
         if self.spread > 0.0 {
             coordinates(&self.center)?;
         }
@@ -156,9 +158,9 @@ impl Support<f32, 2> for CheckedBody2 {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.set.support, self.0.set.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f32, 2>) -> Result<Vector<f32, 2>, Failure> {
+    fn exhaustive(&self, u: &Vector<f32, 2>) -> Result<(Vector<f32, 2>, Vector<f32, 2>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.set.exhaustive.is_some()
@@ -199,7 +201,7 @@ unsafe fn fill<S: Shape<2>>(body: *mut qdist_body2_f32, shape: *const S, support
     let rolling_radius = set.rolling_radius();
     let (extents, errors) = (set.extents().into(), set.errors().into());
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body2_f32 { rolling_radius, extents, errors, ..qdist_body2_f32::at_origin(made) }) };
+    unsafe { put(body, qdist_body2_f32 { rolling_radius, extents, errors, ..qdist_body2_f32::at_origin(made) }) };
     Ok(())
 }
 
@@ -257,7 +259,7 @@ pub unsafe extern "C" fn qdist_body2_points_f32(
             (made.center, made.spread) = (center, spread);
         }
         // SAFETY: checked.
-        unsafe { body.write(made) };
+        unsafe { put(body, made) };
         Ok(())
     };
     status(fill())
@@ -272,7 +274,7 @@ pub unsafe extern "C" fn qdist_body2_set_f32(body: *mut qdist_body2_f32, set: *c
         unsafe {
             let set = shared(set)?;
             set.checked::<2>()?;
-            body.write(qdist_body2_f32::at_origin(*set));
+            put(body, qdist_body2_f32::at_origin(*set));
         }
         Ok(())
     };
@@ -311,7 +313,7 @@ pub unsafe extern "C" fn qdist_body2_join_f32(
         // SAFETY: what the header asks of the caller; a measured extent may be infinite.
         unsafe {
             made.checked()?;
-            body.write(made);
+            put(body, made);
         }
         Ok(())
     };
@@ -339,7 +341,7 @@ pub unsafe extern "C" fn qdist_body2_half_plane_f32(
             dimension: 2,
         };
         // SAFETY: checked.
-        unsafe { body.write(qdist_body2_f32 { unbounded: Some(answer), ..qdist_body2_f32::at_origin(set) }) };
+        unsafe { put(body, qdist_body2_f32 { unbounded: Some(answer), ..qdist_body2_f32::at_origin(set) }) };
         Ok(())
     };
     status(fill())
@@ -441,7 +443,7 @@ unsafe fn ask_join(user: *mut c_void, direction: *const f32, point: *mut f32, ex
         let (join, u, room) = arguments::<qdist_join2_f32, 2>(user, direction, point)?;
         (join.set()?, u, room)
     };
-    let farthest = if exhaustive { set.exhaustive(u) } else { set.support(u) };
+    let farthest = if exhaustive { set.exhaustive(u).map(|(point, _)| point) } else { set.support(u) };
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(farthest.map_err(|failure| failure.0)?.into()) };
     Ok(())
@@ -481,8 +483,9 @@ pub unsafe extern "C" fn qdist_depth2_f32(
         let (one, other, (options, deadline)) = unsafe { (one.checked()?, other.checked()?, convert::<2>(options)?) };
         let (one, other) = (one.place().map_err(from_body)?, other.place().map_err(from_body)?);
         let depth = deadline.during(|interrupt| solver.depth_until(&one, &other, &options, interrupt));
+        overflow(depth.failure)?;
         // SAFETY: checked.
-        unsafe { result.write(from_depth(&depth)) };
+        unsafe { put(result, from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())
@@ -536,8 +539,9 @@ unsafe extern "C" fn answer(
         };
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
         let depth = depth::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
+        overflow(depth.failure)?;
         // SAFETY: `qdist_depth2_f32` has checked it.
-        unsafe { result.cast::<qdist_depth_f32>().write(from_depth(&depth)) };
+        unsafe { put(result.cast::<qdist_depth_f32>(), from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())

@@ -16,7 +16,7 @@
 
 use super::super::generic::{MAX_DIMENSION, aligned, dimension, dot, finite, first, known_size, padded, shared};
 use super::super::handle::qdist_solver;
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, qdist_status, status};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, overflow, qdist_status, status};
 use super::gauges::{CheckedGauge, qdist_gauge_f32};
 use super::query::{Asked, qdist_options_f32, qdist_result_f32};
 use super::sets::qdist_set_f32;
@@ -221,6 +221,7 @@ unsafe fn solve_warm<const N: usize>(
     let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
     let Asked { solver, a, q, options, deadline, .. } = &mut asked;
     let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.gauge(), moved, options, interrupt));
+    overflow(answer.failure)?;
     let mut noted = qdist_tracker_f32::new(N as u32);
     noted.lower = memory.lower;
     for (to, from) in noted.directions.iter_mut().zip(&memory.directions) {

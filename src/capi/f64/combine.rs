@@ -5,7 +5,7 @@
 
 use super::super::generic::{
     MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, is_mirrored, length,
-    shared, tiny,
+    lengths, put, shared, tiny,
 };
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn qdist_set_join_f64(set: *mut qdist_set_f64, pair: *cons
             dimension: n as u32,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -114,6 +114,8 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
         let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
         let own = inner.stated_error(linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f64 as SupportFn<f64>);
+        // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
+        let error = length((stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001)?;
         let made = qdist_set_f64 {
             support: Some(qdist_linear_support_f64),
             exhaustive: shortcuts,
@@ -121,12 +123,11 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
             user: map.cast_mut().cast(),
             radius: 0.0,
             extent: reach,
-            // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
-            error: (stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001,
+            error,
             dimension: linear.rows,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -264,8 +265,10 @@ unsafe fn fill_pair(
         error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
         dimension: n as u32,
     };
+    // Sums of lengths that are legal may be too large.
+    lengths([made.radius, made.extent, made.error])?;
     // SAFETY: checked.
-    unsafe { set.write(made) };
+    unsafe { put(set, made) };
     Ok(())
 }
 

@@ -5,8 +5,8 @@
 //! ordinary Euclidean depth. The structs and lists must outlive the gauge that is made of them.
 
 use super::super::generic::{
-    CallbackGauge, MAX_DIMENSION, Parts, aligned, array, coordinates, dimension, dot, farthest, finite, first,
-    in_range, largest, length, mirrored_always, padded, reach, semi_axes, shared,
+    CallbackGauge, MAX_DIMENSION, Parts, aligned, array, coordinates, dimension, dot, farthest, finite, first, gaps,
+    in_range, largest, length, mirrored_always, padded, put, reach, semi_axes, shared,
 };
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_ROTATION, from_shape, qdist_status, status,
@@ -57,6 +57,8 @@ pub struct qdist_gauge_f64 {
     pub dimension: u32,
 }
 
+gaps!(qdist_gauge_f64, user..extent, dimension..);
+
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -99,6 +101,8 @@ pub struct qdist_segment_gauge_f64 {
     /// 2 to 6.
     pub dimension: u32,
 }
+
+gaps!(qdist_segment_gauge_f64, dimension..);
 
 /// Makes the ball of this radius > 0 around the origin, of any dimension.
 #[unsafe(no_mangle)]
@@ -652,7 +656,7 @@ fn orthonormal(matrix: &[f64], n: usize) -> Check {
 unsafe fn write(gauge: *mut qdist_gauge_f64, value: qdist_gauge_f64) -> Check {
     aligned(gauge)?;
     // SAFETY: checked.
-    unsafe { gauge.write(value) };
+    unsafe { put(gauge, value) };
     Ok(())
 }
 

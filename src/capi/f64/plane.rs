@@ -7,10 +7,11 @@
 //! A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
 //! way: write { c, -s, s, c } for the cosine and sine that you have.
 
-use super::super::generic::{aligned, ask, coordinates, known_size, lengths, shared, tiny};
+use super::super::generic::{aligned, ask, coordinates, gaps, known_size, lengths, put, shared, tiny};
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, from_status, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, from_status, overflow, qdist_status,
+    status,
 };
 use super::super::symmetry::qdist_unbounded;
 use super::points::{self, qdist_points_f64};
@@ -42,6 +43,8 @@ pub struct qdist_body2_f64 {
     /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
 }
+
+gaps!(qdist_body2_f64, set.dimension..rotation, errors..unbounded, unbounded..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -119,9 +122,8 @@ impl qdist_body2_f64 {
     unsafe fn checked(&self) -> Check<&CheckedBody2> {
         // SAFETY: the caller's promise.
         unsafe { self.set.checked::<2>() }?;
-        lengths([self.spread, self.rolling_radius])?;
-        lengths(self.extents)?;
-        lengths(self.errors)?;
+        let [[a, b], [c, d]] = [self.extents, self.errors];
+        lengths([self.spread, self.rolling_radius, a, b, c, d])?;
         if self.spread > 0.0 {
             coordinates(&self.center)?;
         }
@@ -155,9 +157,9 @@ impl Support<f64, 2> for CheckedBody2 {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.set.support, self.0.set.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f64, 2>) -> Result<Vector<f64, 2>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, 2>) -> Result<(Vector<f64, 2>, Vector<f64, 2>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.set.exhaustive.is_some()
@@ -198,7 +200,7 @@ unsafe fn fill<S: Shape<2>>(body: *mut qdist_body2_f64, shape: *const S, support
     let rolling_radius = set.rolling_radius();
     let (extents, errors) = (set.extents().into(), set.errors().into());
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(qdist_body2_f64 { rolling_radius, extents, errors, ..qdist_body2_f64::at_origin(made) }) };
+    unsafe { put(body, qdist_body2_f64 { rolling_radius, extents, errors, ..qdist_body2_f64::at_origin(made) }) };
     Ok(())
 }
 
@@ -256,7 +258,7 @@ pub unsafe extern "C" fn qdist_body2_points_f64(
             (made.center, made.spread) = (center, spread);
         }
         // SAFETY: checked.
-        unsafe { body.write(made) };
+        unsafe { put(body, made) };
         Ok(())
     };
     status(fill())
@@ -271,7 +273,7 @@ pub unsafe extern "C" fn qdist_body2_set_f64(body: *mut qdist_body2_f64, set: *c
         unsafe {
             let set = shared(set)?;
             set.checked::<2>()?;
-            body.write(qdist_body2_f64::at_origin(*set));
+            put(body, qdist_body2_f64::at_origin(*set));
         }
         Ok(())
     };
@@ -310,7 +312,7 @@ pub unsafe extern "C" fn qdist_body2_join_f64(
         // SAFETY: what the header asks of the caller; a measured extent may be infinite.
         unsafe {
             made.checked()?;
-            body.write(made);
+            put(body, made);
         }
         Ok(())
     };
@@ -338,7 +340,7 @@ pub unsafe extern "C" fn qdist_body2_half_plane_f64(
             dimension: 2,
         };
         // SAFETY: checked.
-        unsafe { body.write(qdist_body2_f64 { unbounded: Some(answer), ..qdist_body2_f64::at_origin(set) }) };
+        unsafe { put(body, qdist_body2_f64 { unbounded: Some(answer), ..qdist_body2_f64::at_origin(set) }) };
         Ok(())
     };
     status(fill())
@@ -440,7 +442,7 @@ unsafe fn ask_join(user: *mut c_void, direction: *const f64, point: *mut f64, ex
         let (join, u, room) = arguments::<qdist_join2_f64, 2>(user, direction, point)?;
         (join.set()?, u, room)
     };
-    let farthest = if exhaustive { set.exhaustive(u) } else { set.support(u) };
+    let farthest = if exhaustive { set.exhaustive(u).map(|(point, _)| point) } else { set.support(u) };
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(farthest.map_err(|failure| failure.0)?.into()) };
     Ok(())
@@ -480,8 +482,9 @@ pub unsafe extern "C" fn qdist_depth2_f64(
         let (one, other, (options, deadline)) = unsafe { (one.checked()?, other.checked()?, convert::<2>(options)?) };
         let (one, other) = (one.place().map_err(from_body)?, other.place().map_err(from_body)?);
         let depth = deadline.during(|interrupt| solver.depth_until(&one, &other, &options, interrupt));
+        overflow(depth.failure)?;
         // SAFETY: checked.
-        unsafe { result.write(from_depth(&depth)) };
+        unsafe { put(result, from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())
@@ -535,8 +538,9 @@ unsafe extern "C" fn answer(
         };
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
         let depth = depth::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
+        overflow(depth.failure)?;
         // SAFETY: `qdist_depth2_f64` has checked it.
-        unsafe { result.cast::<qdist_depth_f64>().write(from_depth(&depth)) };
+        unsafe { put(result.cast::<qdist_depth_f64>(), from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())

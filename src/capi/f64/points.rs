@@ -5,7 +5,8 @@
 //! coordinates are read and checked: make it anew when they change.
 
 use super::super::generic::{
-    MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, in_range, reach, shared, tiny,
+    MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, gaps, in_range, put, reach, shared,
+    tiny,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
@@ -38,6 +39,8 @@ pub struct qdist_hull_f64 {
     pub graph_len: u32,
 }
 
+gaps!(qdist_hull_f64, points.dimension..graph, graph_len..);
+
 // The macro QDIST_HULL_GRAPH_LEN.
 const _: () = assert!(graph_len(0) <= 16 && graph_len(1000) <= 11 * 1000 + 16 && graph_len(65535) <= 11 * 65535 + 16);
 
@@ -64,7 +67,7 @@ pub unsafe extern "C" fn qdist_set_points_f64(set: *mut qdist_set_f64, shape: *c
             dimension: points.dimension,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -114,7 +117,7 @@ pub unsafe extern "C" fn qdist_hull_prepare_f64(
         };
         solver.prepare_hull(as_points(coordinates), words).map_err(from_graph)?;
         // SAFETY: checked.
-        unsafe { hull.write(qdist_hull_f64 { points: list, graph, graph_len: graph_capacity }) };
+        unsafe { put(hull, qdist_hull_f64 { points: list, graph, graph_len: graph_capacity }) };
         Ok(())
     };
     status(prepare())
@@ -286,7 +289,7 @@ unsafe fn fill(
         (made.center, made.spread) = (center, spread);
     }
     // SAFETY: checked.
-    unsafe { body.write(made) };
+    unsafe { put(body, made) };
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Every query returns a bracket: lower <= d <= upper holds whatever the outcome, rounding included. It is as narrow as
 //! the options ask for when the outcome is QDIST_CONVERGED, and that or as narrow as rounding allows for QDIST_TOUCHING; with
-//! QDIST_SEPARATED it may be wider when an iteration limit ended the search. An end that is not known is
+//! QDIST_SEPARATED it may be wider when a limit, `interrupt` or the scalar type ended the search. An end that is not known is
 //! -DBL_MAX or DBL_MAX (float: FLT_MAX).
 //!
 //! The result is written when the call works, or when only a callback failed; otherwise it is left as it was.
@@ -22,12 +22,12 @@
 //! one-sided derivatives, each the least of those at all minimisers.
 
 use super::super::generic::{
-    Deadline, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, known_size, length, padded, shared,
+    Deadline, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, gaps, known_size, length, padded, put, shared,
 };
-use super::super::handle::{self, qdist_solver};
+use super::super::handle::{self, Opened, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, plan, qdist_interrupt,
-    qdist_outcome, qdist_plan, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, overflow, plan,
+    qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status,
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
@@ -36,7 +36,6 @@ use crate::Plan;
 use crate::scalar::{Real, Vector};
 #[cfg(feature = "grasp")]
 use crate::simplex::{Simplex, Vertex};
-use crate::solver::Solver;
 use crate::support::{alone, one_by_one};
 use crate::{Answer, Depth, Options, Outcome};
 use core::ffi::c_void;
@@ -48,7 +47,7 @@ use core::ffi::c_void;
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most points to add, over all plans; 0: 50,000, less than a second in dimension 6.
+    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6 (`make figures`).
     pub max_iterations: u32,
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     pub interrupt: qdist_interrupt,
@@ -69,6 +68,8 @@ pub struct qdist_options_f64 {
     pub guess: [f64; 6],
 }
 
+gaps!(qdist_options_f64, guess..);
+
 /// The depth of two bodies.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -84,8 +85,7 @@ pub struct qdist_depth_f64 {
     /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
     /// number is 0.)
     pub normal: [f64; 3],
-    /// Witness points on A and B, in the world. For QDIST_CONVERGED, QDIST_TOUCHING and QDIST_SEPARATED (elsewhere they only
-    /// prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
+    /// Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     /// after B has been moved, or the nearest points of separated bodies.
     pub point_a: [f64; 3],
     pub point_b: [f64; 3],
@@ -93,7 +93,8 @@ pub struct qdist_depth_f64 {
     pub dimension: u32,
     /// Points added.
     pub iterations: u32,
-    /// Calls of each body's support function.
+    /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
+    /// state its extent.
     pub support_calls: u32,
     /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
     /// QDIST_INTERRUPTED).
@@ -102,6 +103,8 @@ pub struct qdist_depth_f64 {
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     pub callback_code: i32,
 }
+
+gaps!(qdist_depth_f64, callback_code..);
 
 /// The generalized depth of the origin in a set.
 #[repr(C)]
@@ -150,6 +153,8 @@ pub struct qdist_result_f64 {
     pub callback_code: i32,
 }
 
+gaps!(qdist_result_f64, callback_code..);
+
 /// Writes the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_options_default_f64(options: *mut qdist_options_f64) -> qdist_status {
@@ -168,7 +173,7 @@ pub unsafe extern "C" fn qdist_options_default_f64(options: *mut qdist_options_f
             guess: [0.0; MAX_DIMENSION],
         };
         // SAFETY: checked.
-        unsafe { options.write(default) };
+        unsafe { put(options, default) };
         Ok(())
     };
     status(fill())
@@ -209,8 +214,9 @@ pub unsafe extern "C" fn qdist_depth3_f64(
             (_, _, Err(status)) => return Err(*status),
             (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),
         };
+        overflow(depth.failure)?;
         // SAFETY: checked.
-        unsafe { result.write(from_depth(&depth)) };
+        unsafe { put(result, from_depth(&depth)) };
         conclude(depth.outcome)
     };
     status(solve())
@@ -409,7 +415,7 @@ pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
 
 /// A query in dimension `N` whose arguments have passed the checks.
 pub(super) struct Asked<'w, const N: usize> {
-    pub solver: Solver<'w, f64, N>,
+    pub solver: Opened<'w, f64, N>,
     pub a: &'w CheckedSet,
     pub q: CheckedGauge,
     pub options: Options<f64, N>,
@@ -445,8 +451,9 @@ impl<const N: usize> Asked<'_, N> {
     /// Writes the result.
     #[inline(always)]
     pub fn conclude(&self, answer: &Answer<f64, N>) -> Check {
+        overflow(answer.failure)?;
         // SAFETY: `new` has checked it.
-        unsafe { self.result.write(from_answer(answer, self.q.code(answer.failure))) };
+        unsafe { put(self.result, from_answer(answer, self.q.code(answer.failure))) };
         conclude(answer.outcome)
     }
 }

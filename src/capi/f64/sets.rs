@@ -5,7 +5,7 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{aligned, ask, coordinates, is_mirrored, lengths, shared};
+use super::super::generic::{aligned, ask, coordinates, gaps, is_mirrored, lengths, put, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
@@ -24,7 +24,7 @@ use core::ffi::c_void;
 /// not necessarily of unit length. point: room for as many.
 ///
 /// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-/// INT32_MIN + 2. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+/// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 /// points are equally far, any of them.
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
@@ -53,6 +53,8 @@ pub struct qdist_set_f64 {
     /// The dimension that the functions work in; 0: not known, and not checked.
     pub dimension: u32,
 }
+
+gaps!(qdist_set_f64, dimension..);
 
 /// A set in space with a pose: x -> rotation * x + translation.
 #[repr(C)]
@@ -83,6 +85,8 @@ pub struct qdist_body_f64 {
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
 }
+
+gaps!(qdist_body_f64, set.dimension..rotation, symmetry..unbounded, unbounded..);
 
 impl qdist_set_f64 {
     /// Checks the numbers for dimension `N`.
@@ -118,9 +122,9 @@ impl<const N: usize> Support<f64, N> for CheckedSet {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.support, self.0.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f64, N>) -> Result<Vector<f64, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, N>) -> Result<(Vector<f64, N>, Vector<f64, N>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }
+        unsafe { ask(self.0.exhaustive.or(self.0.support), self.0.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.exhaustive.is_some()
@@ -171,9 +175,8 @@ impl qdist_body_f64 {
     pub(super) unsafe fn checked(&self) -> Check<&CheckedBody> {
         // SAFETY: the caller's promise.
         unsafe { self.set.checked::<3>() }?;
-        lengths([self.spread, self.rolling_radius])?;
-        lengths(self.extents)?;
-        lengths(self.errors)?;
+        let [[a, b, c], [d, e, f]] = [self.extents, self.errors];
+        lengths([self.spread, self.rolling_radius, a, b, c, d, e, f])?;
         if self.spread > 0.0 {
             coordinates(&self.center)?;
         }
@@ -205,9 +208,9 @@ impl Support<f64, 3> for CheckedBody {
         // SAFETY: the promise of `checked`.
         unsafe { ask(self.0.set.support, self.0.set.user, u) }
     }
-    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+    fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<(Vector<f64, 3>, Vector<f64, 3>), Failure> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }
+        unsafe { ask(self.0.set.exhaustive.or(self.0.set.support), self.0.set.user, u) }.map(|p| (p, p))
     }
     fn has_shortcuts(&self) -> bool {
         self.0.set.exhaustive.is_some()
@@ -253,7 +256,7 @@ pub unsafe extern "C" fn qdist_body_set_f64(body: *mut qdist_body_f64, set: *con
         // SAFETY: what the header asks of the caller; the functions are not called here.
         unsafe { set.checked::<3>() }?;
         // SAFETY: checked.
-        unsafe { body.write(qdist_body_f64::at_origin(*set)) };
+        unsafe { put(body, qdist_body_f64::at_origin(*set)) };
         Ok(())
     };
     status(fill())

@@ -11,7 +11,7 @@
 //! that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
 //! shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set.
 
-use super::super::generic::{aligned, mirrored_always, shared, tiny};
+use super::super::generic::{aligned, mirrored_always, put, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
@@ -140,7 +140,7 @@ unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f64, shape: *const S, support:
     let (extents, errors) = (set.extents().into(), set.errors().into());
     let made = qdist_body_f64 { symmetry, rolling_radius, extents, errors, ..qdist_body_f64::at_origin(made) };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { body.write(made) };
+    unsafe { put(body, made) };
     Ok(())
 }
 

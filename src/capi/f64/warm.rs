@@ -15,7 +15,7 @@
 
 use super::super::generic::{MAX_DIMENSION, aligned, dimension, dot, finite, first, known_size, padded, shared};
 use super::super::handle::qdist_solver;
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, qdist_status, status};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, overflow, qdist_status, status};
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::query::{Asked, qdist_options_f64, qdist_result_f64};
 use super::sets::qdist_set_f64;
@@ -220,6 +220,7 @@ unsafe fn solve_warm<const N: usize>(
     let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
     let Asked { solver, a, q, options, deadline, .. } = &mut asked;
     let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.gauge(), moved, options, interrupt));
+    overflow(answer.failure)?;
     let mut noted = qdist_tracker_f64::new(N as u32);
     noted.lower = memory.lower;
     for (to, from) in noted.directions.iter_mut().zip(&memory.directions) {

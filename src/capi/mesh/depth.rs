@@ -4,7 +4,7 @@
 //! certainty, so the answer is a bracket: no free pose is nearer than `lower`, and `pose` is free, proved by the solid test, at the
 //! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
-use super::super::generic::{aligned, array, finite, known_size, shared};
+use super::super::generic::{aligned, array, finite, gaps, known_size, put, shared};
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
 use super::guard::guard;
 use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
@@ -135,6 +135,8 @@ pub struct qdist_mesh_options {
     pub watch_user: *mut c_void,
 }
 
+gaps!(qdist_mesh_options, watch_user..);
+
 /// An answer: lower <= depth <= upper.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -211,7 +213,7 @@ pub unsafe extern "C" fn qdist_mesh_options_default(options: *mut qdist_mesh_opt
             watch_user: null_mut(),
         };
         // SAFETY: checked, and what the header asks of the caller.
-        unsafe { options.write(made) };
+        unsafe { put(options, made) };
         Ok(())
     };
     status(write())
@@ -231,7 +233,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_depth(
     guard(|| {
         aligned(depth)?;
         // SAFETY: what the header asks of the caller.
-        let (pair, pose, query) = unsafe {
+        let (mut pair, pose, query) = unsafe {
             known_size((&raw const (*depth).struct_size).read(), size_of::<qdist_mesh_depth>())?;
             (exclusive(pair)?, shared(pose)?.checked()?, Query::new(options)?)
         };

@@ -7,14 +7,17 @@ use super::super::generic::{aligned, coordinates, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, QDIST_ERROR_NONFINITE, QDIST_ERROR_ROTATION, qdist_status,
 };
-use super::guard::{caught, guard};
+use super::guard::{Exclusive, Taken, caught, guard};
 use super::model::qdist_mesh;
 use crate::mesh::{Contact, DepthSolver, Distance, Feature, MAX_COORDINATE, Model};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use std::sync::Arc;
 
 /// A pair: opaque.
-pub struct qdist_mesh_pair {
+pub struct qdist_mesh_pair(Exclusive<Pair>);
+
+/// What is in it.
+pub(super) struct Pair {
     /// Before what it borrows from, so that it is dropped first.
     solver: DepthSolver<'static>,
     contacts: Vec<Contact>,
@@ -30,19 +33,19 @@ const _: () = {
     shared::<qdist_mesh>();
 };
 
-impl qdist_mesh_pair {
+impl Pair {
     fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
         // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the solver,
         // which nothing takes out of this struct.
         let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
-        qdist_mesh_pair { solver: DepthSolver::new(one, two), contacts: Vec::new(), a, b }
+        Pair { solver: DepthSolver::new(one, two), contacts: Vec::new(), a, b }
     }
 
     /// Asks the solver. A panic leaves the pair as new.
     pub(super) fn ask<R>(&mut self, question: impl FnOnce(&mut DepthSolver<'static>) -> R) -> Check<R> {
         let answer = caught(|| question(&mut self.solver));
         answer.ok_or_else(|| {
-            *self = qdist_mesh_pair::new(self.a.clone(), self.b.clone());
+            *self = Pair::new(self.a.clone(), self.b.clone());
             QDIST_ERROR_INTERNAL
         })
     }
@@ -51,11 +54,10 @@ impl qdist_mesh_pair {
 /// A pair of the caller, for one call.
 ///
 /// # Safety
-/// If not NULL, it is from qdist_mesh_pair_create, not freed, and not used by another call for the life `'a`.
-pub(super) unsafe fn exclusive<'a>(pair: *mut qdist_mesh_pair) -> Check<&'a mut qdist_mesh_pair> {
-    aligned(pair)?;
-    // SAFETY: checked, and the caller's promise.
-    Ok(unsafe { &mut *pair })
+/// If not NULL, it is from qdist_mesh_pair_create, and not freed for the life `'a`.
+pub(super) unsafe fn exclusive<'a>(pair: *mut qdist_mesh_pair) -> Check<Taken<'a, Pair>> {
+    // SAFETY: the caller's promise.
+    unsafe { shared(pair.cast_const()) }?.0.take()
 }
 
 /// Where A is, in the frame of B: x_B = R x_A + t.
@@ -176,17 +178,18 @@ pub unsafe extern "C" fn qdist_mesh_pair_create(
         aligned(pair)?;
         // SAFETY: what the header asks of the caller.
         let (a, b) = unsafe { (shared(a)?, shared(b)?) };
-        let made = Box::new(qdist_mesh_pair::new(a.model.clone(), b.model.clone()));
+        let made = Box::new(qdist_mesh_pair(Exclusive::new(Pair::new(a.model.clone(), b.model.clone()))));
         // SAFETY: checked, and what the header asks of the caller.
         unsafe { pair.write(Box::into_raw(made)) };
         Ok(())
     })
 }
 
-/// Frees a pair; NULL is nothing.
+/// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_pair_free(pair: *mut qdist_mesh_pair) {
-    if !pair.is_null() {
+    // SAFETY: what the header asks of the caller.
+    if !pair.is_null() && unsafe { exclusive(pair) }.is_ok() {
         // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
         drop(unsafe { Box::from_raw(pair) });
     }
@@ -203,7 +206,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_collides(
     guard(|| {
         aligned(collides)?;
         // SAFETY: what the header asks of the caller.
-        let (pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
         let found = pair.ask(|solver| solver.pair().collides(&pose))?;
         // SAFETY: checked, and what the header asks of the caller.
         unsafe { collides.write(found.into()) };
@@ -211,8 +214,8 @@ pub unsafe extern "C" fn qdist_mesh_pair_collides(
     })
 }
 
-/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some ten
-/// microseconds, and less where the pose has changed little.
+/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
+/// microseconds (`make figures`), and less where the pose has changed little.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_pair_distance(
     pair: *mut qdist_mesh_pair,
@@ -222,7 +225,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_distance(
     guard(|| {
         aligned(distance)?;
         // SAFETY: what the header asks of the caller.
-        let (pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
         let found = pair.ask(|solver| solver.pair().distance(&pose))?;
         // SAFETY: checked, and what the header asks of the caller.
         unsafe { distance.write(qdist_mesh_distance::new(&found)) };
@@ -251,7 +254,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_contacts(
             aligned(contacts)?;
         }
         // SAFETY: what the header asks of the caller.
-        let (pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
         if !margin.is_finite() {
             return Err(QDIST_ERROR_NONFINITE);
         }

@@ -17,10 +17,10 @@
 //! It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
 //! qdist_mesh_pair_contacts of another pair of the same meshes.
 
-use super::super::generic::{aligned, finite, flag, known_size, shared};
+use super::super::generic::{aligned, finite, flag, gaps, known_size, put, shared};
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, qdist_status, status};
 use super::depth::{QDIST_MESH_FAST, effort, qdist_mesh_depth, qdist_mesh_effort};
-use super::guard::{caught, guard};
+use super::guard::{Exclusive, Taken, caught, guard};
 use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
 use super::model::{qdist_mesh, qdist_mesh_mass};
 use super::pair::qdist_mesh_pose;
@@ -30,7 +30,10 @@ use core::ptr::{null, null_mut};
 use std::sync::Arc;
 
 /// A tracker: opaque.
-pub struct qdist_mesh_tracker {
+pub struct qdist_mesh_tracker(Exclusive<Tracker>);
+
+/// What is in it.
+struct Tracker {
     /// Before what it borrows from, so that it is dropped first.
     tracker: DepthTracker<'static>,
     a: Arc<Model>,
@@ -43,19 +46,19 @@ const _: () = {
     passed::<qdist_mesh_tracker>();
 };
 
-impl qdist_mesh_tracker {
+impl Tracker {
     fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
         // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the tracker,
         // which nothing takes out of this struct.
         let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
-        qdist_mesh_tracker { tracker: DepthTracker::new(one, two), a, b }
+        Tracker { tracker: DepthTracker::new(one, two), a, b }
     }
 
     /// Asks the tracker. A panic leaves it as new.
     fn ask<R>(&mut self, question: impl FnOnce(&mut DepthTracker<'static>) -> R) -> Check<R> {
         let answer = caught(|| question(&mut self.tracker));
         answer.ok_or_else(|| {
-            *self = qdist_mesh_tracker::new(self.a.clone(), self.b.clone());
+            *self = Tracker::new(self.a.clone(), self.b.clone());
             QDIST_ERROR_INTERNAL
         })
     }
@@ -64,11 +67,10 @@ impl qdist_mesh_tracker {
 /// A tracker of the caller, for one call.
 ///
 /// # Safety
-/// If not NULL, it is from qdist_mesh_tracker_create, not freed, and not used by another call for the life `'a`.
-unsafe fn exclusive<'a>(tracker: *mut qdist_mesh_tracker) -> Check<&'a mut qdist_mesh_tracker> {
-    aligned(tracker)?;
-    // SAFETY: checked, and the caller's promise.
-    Ok(unsafe { &mut *tracker })
+/// If not NULL, it is from qdist_mesh_tracker_create, and not freed for the life `'a`.
+unsafe fn exclusive<'a>(tracker: *mut qdist_mesh_tracker) -> Check<Taken<'a, Tracker>> {
+    // SAFETY: the caller's promise.
+    unsafe { shared(tracker.cast_const()) }?.0.take()
 }
 
 /// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
@@ -105,6 +107,8 @@ pub struct qdist_mesh_budget {
     pub late_user: *mut c_void,
 }
 
+gaps!(qdist_mesh_budget, effort..mass, late_user..);
+
 /// Writes the defaults, struct_size included.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_budget_default(budget: *mut qdist_mesh_budget) -> qdist_status {
@@ -125,7 +129,7 @@ pub unsafe extern "C" fn qdist_mesh_budget_default(budget: *mut qdist_mesh_budge
             late_user: null_mut(),
         };
         // SAFETY: checked, and what the header asks of the caller.
-        unsafe { budget.write(made) };
+        unsafe { put(budget, made) };
         Ok(())
     };
     status(write())
@@ -179,17 +183,18 @@ pub unsafe extern "C" fn qdist_mesh_tracker_create(
         aligned(tracker)?;
         // SAFETY: what the header asks of the caller.
         let (a, b) = unsafe { (shared(a)?, shared(b)?) };
-        let made = Box::new(qdist_mesh_tracker::new(a.model.clone(), b.model.clone()));
+        let made = Box::new(qdist_mesh_tracker(Exclusive::new(Tracker::new(a.model.clone(), b.model.clone()))));
         // SAFETY: checked, and what the header asks of the caller.
         unsafe { tracker.write(Box::into_raw(made)) };
         Ok(())
     })
 }
 
-/// Frees a tracker; NULL is nothing.
+/// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_mesh_tracker_free(tracker: *mut qdist_mesh_tracker) {
-    if !tracker.is_null() {
+    // SAFETY: what the header asks of the caller.
+    if !tracker.is_null() && unsafe { exclusive(tracker) }.is_ok() {
         // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
         drop(unsafe { Box::from_raw(tracker) });
     }
@@ -209,7 +214,7 @@ pub unsafe extern "C" fn qdist_mesh_tracker_update(
     guard(|| {
         aligned(depth)?;
         // SAFETY: what the header asks of the caller.
-        let (tracker, pose, tick) = unsafe {
+        let (mut tracker, pose, tick) = unsafe {
             known_size((&raw const (*depth).struct_size).read(), size_of::<qdist_mesh_depth>())?;
             (exclusive(tracker)?, shared(pose)?.checked()?, Tick::new(budget)?)
         };
@@ -243,7 +248,7 @@ pub unsafe extern "C" fn qdist_mesh_tracker_merge(
             aligned(taken)?;
         }
         // SAFETY: what the header asks of the caller.
-        let (tracker, pose) = unsafe {
+        let (mut tracker, pose) = unsafe {
             known_size((&raw const (*answer).struct_size).read(), size_of::<qdist_mesh_depth>())?;
             (exclusive(tracker)?, shared(answer)?.pose.checked()?)
         };
@@ -272,7 +277,7 @@ pub unsafe extern "C" fn qdist_mesh_tracker_merge(
 pub unsafe extern "C" fn qdist_mesh_tracker_reset(tracker: *mut qdist_mesh_tracker) -> qdist_status {
     guard(|| {
         // SAFETY: what the header asks of the caller.
-        let tracker = unsafe { exclusive(tracker) }?;
+        let mut tracker = unsafe { exclusive(tracker) }?;
         tracker.ask(DepthTracker::reset)
     })
 }

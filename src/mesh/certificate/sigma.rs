@@ -33,10 +33,19 @@ use crate::scalar::Real;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::fmt;
 
 /// The inertia is not finite, not positive definite, or worse conditioned than 1e10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InertiaError;
+
+impl fmt::Display for InertiaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the inertia is not finite, not positive definite, or worse conditioned than 1e10")
+    }
+}
+
+impl std::error::Error for InertiaError {}
 
 /// How far unit sigma moves the points of A's pieces.
 #[derive(Clone, Debug)]

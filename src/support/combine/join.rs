@@ -1,7 +1,7 @@
 //! The convex hull of two sets.
 
-use super::above;
 use super::linear::measured_extent;
+use super::{above, total};
 use crate::scalar::{Real, Vector, finite};
 use crate::support::shapes::{in_range, largest, length, rescaled, unit};
 use crate::support::{Failure, Support, Symmetry};
@@ -125,7 +125,8 @@ fn size<T: Real, const N: usize>(part: &impl Support<T, N>) -> T {
 fn stated_error<T: Real, const N: usize>(part: &impl Support<T, N>) -> T {
     let known = part.extent() > T::zero();
     let default = if known { T::zero() } else { T::count(16 * N) * T::ROUNDOFF * measured_extent(part) };
-    part.error().at_least(default)
+    let stated = part.error();
+    if stated >= T::zero() { stated.at_least(default) } else { -T::HUGE }
 }
 
 impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> for Join<A, B> {
@@ -134,8 +135,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         Ok(self.farther(u, self.a.support(u)?, self.b.support(u)?))
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.farther(u, self.a.exhaustive(u)?, self.b.exhaustive(u)?))
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let p = self.farther(u, self.a.exhaustive(u)?.0, self.b.exhaustive(u)?.0);
+        Ok((p, p))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -176,7 +178,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         let excess = self.excess().abs();
         let put_on = if excess > T::zero() { T::count(N / 2 + 5) * excess + self.extent() } else { T::zero() };
         let rounding = (T::count(N + 2) * self.spread() + put_on) * T::ROUNDOFF;
-        above(stated_error(&self.a).at_least(stated_error(&self.b)) + rounding, 0)
+        // A negative number, which a query refuses, must not hide behind a positive one.
+        let (a, b) = (stated_error(&self.a), stated_error(&self.b));
+        above(total(a, b).at_most(a.at_least(b)) + rounding, 0)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::{if_known, mapped, transposed};
+use super::{if_known, mapped, total, transposed};
 use crate::scalar::{Real, Vector, norm};
 use crate::support::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled, unit};
 use crate::support::{Failure, Support};
@@ -73,9 +73,10 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Linear<S, T, N
         Ok(self.image(self.shape.support(&w)?, &w, self.shape.radius()))
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         let w = self.direction(u);
-        Ok(self.image(self.shape.exhaustive(&w)?, &w, self.shape.radius()))
+        let p = self.image(self.shape.exhaustive(&w)?.0, &w, self.shape.radius());
+        Ok((p, p))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -83,15 +84,17 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Linear<S, T, N
     }
     fn extent(&self) -> T {
         let inner = self.shape.extent();
-        if_known(&[inner], self.stretch * (inner + self.shape.radius()) + self.shift)
+        if_known(&[inner], self.stretch * total(inner, self.shape.radius()) + self.shift)
     }
     fn error(&self) -> T {
         let (known, radius) = (self.shape.extent(), self.shape.radius());
         let inner = if known > T::zero() { known } else { measured_extent(&self.shape) };
         // What `Support::error` would be by default, had the shape known its extent.
         let own = if known > T::zero() { T::zero() } else { T::count(16 * N) * T::ROUNDOFF * inner };
-        let reach = self.stretch * (inner + radius) + self.shift;
-        above(self.stretch * self.shape.error().at_least(own) + T::count(4 * N + 8) * T::ROUNDOFF * reach, N)
+        let stated = self.shape.error();
+        let stated = if stated >= T::zero() { stated.at_least(own) } else { -T::HUGE };
+        let reach = self.stretch * total(inner, radius) + self.shift;
+        above(self.stretch * stated + T::count(4 * N + 8) * T::ROUNDOFF * reach, N)
     }
 }
 
@@ -103,7 +106,8 @@ pub(super) fn measured_extent<T: Real, const N: usize>(shape: &impl Support<T, N
         for sign in [T::one(), -T::one()] {
             let mut axis = Vector::<T, N>::zeros();
             axis[i] = sign;
-            let Ok(point) = shape.support(&axis) else { return T::one() / T::zero() };
+            // (Without shortcuts, which may fall short.)
+            let Ok((point, _)) = shape.exhaustive(&axis) else { return T::one() / T::zero() };
             corner[i] = corner[i].at_least(point[i].abs());
         }
     }

@@ -27,7 +27,7 @@ impl<'a, T: Real, const N: usize> Measured<'a, T, N> {
             for sign in [T::one(), -T::one()] {
                 let mut axis = Vector::<T, N>::zeros();
                 axis[i] = sign;
-                extents[i] = extents[i].at_least(set.exhaustive(&axis).ok()?[i].abs());
+                extents[i] = extents[i].at_least(set.exhaustive(&axis).ok()?.0[i].abs());
             }
         }
         // What the support function may have missed along the axes.
@@ -44,7 +44,7 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.set.support_with_witness(u)
     }
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.set.exhaustive(u)
     }
     fn has_shortcuts(&self) -> bool {

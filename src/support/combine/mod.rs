@@ -55,6 +55,13 @@ fn mapped<T: Real, const N: usize>(m: &SMatrix<T, N, N>, x: &Vector<T, N>, t: &V
     p + t
 }
 
+/// The sum of two lengths, each of which must be >= 0: a part's negative length must not hide in a sum that is positive. The query that
+/// reads the combination's refuses it.
+#[inline(always)]
+pub(crate) fn total<T: Real>(a: T, b: T) -> T {
+    if a >= T::zero() && b >= T::zero() { a + b } else { -T::HUGE }
+}
+
 /// The extent of a combination: `known` if the parts are known.
 #[inline(always)]
 fn if_known<T: Real>(parts: &[T], known: T) -> T {
@@ -64,7 +71,7 @@ fn if_known<T: Real>(parts: &[T], known: T) -> T {
 /// The error of a sum or difference of two points; the extents are widened by the error of the points.
 #[inline]
 fn pair_error<T: Real>(errors: T, extents: T) -> T {
-    above(errors + T::ROUNDOFF * (extents + errors), 0)
+    above(total(errors, T::ROUNDOFF * (extents + errors)), 0)
 }
 
 /// The same coordinate by coordinate.
@@ -87,7 +94,7 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
         (**self).support_with_witness(u)
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         (**self).exhaustive(u)
     }
     #[inline]

@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use super::{if_known, mapped, transposed};
+use super::{if_known, mapped, total, transposed};
 use crate::scalar::{Real, Vector};
 use crate::support::shapes::{ShapeError, above, check_numbers, length, magnitude, unit};
 use crate::support::{Failure, Support, Symmetry};
@@ -106,9 +106,10 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
         Ok(self.moved(self.shape.support(&local)?, &local))
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         let local = transposed(&self.rotation, u);
-        Ok(self.moved(self.shape.exhaustive(&local)?, &local))
+        let p = self.moved(self.shape.exhaustive(&local)?.0, &local);
+        Ok((p, p))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -142,7 +143,7 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
             return above(self.shape.error() + T::count(2) * T::ROUNDOFF * reach, N);
         }
         let n = T::count(4 * N) * T::count(N).root() + T::count(N + 10);
-        self.stretch * above(self.shape.error() + n * T::ROUNDOFF * reach, N)
+        self.stretch * above(total(self.shape.error(), n * T::ROUNDOFF * reach), N)
     }
     /// As for `error`, with |R| x in the place of s |x|: R^T u has rounding error N u |R|^T |u|, which costs twice that times |R| E; R x + t
     /// has (N + 1) u |R| E + u |t|.

@@ -1,6 +1,6 @@
 //! Sets that are scaled, or grown by a margin.
 
-use super::{pair_error, pair_errors};
+use super::{pair_error, pair_errors, total};
 use crate::scalar::{Real, Vector};
 use crate::support::shapes::{ShapeError, above, check_sizes};
 use crate::support::{Failure, Support, Symmetry};
@@ -38,8 +38,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
         Ok(self.shape.support(u)? * self.factor)
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.shape.exhaustive(u)? * self.factor)
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let p = self.shape.exhaustive(u)?.0 * self.factor;
+        Ok((p, p))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -104,7 +105,7 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
         self.shape.support_with_witness(u)
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.shape.exhaustive(u)
     }
     #[inline]
@@ -113,7 +114,7 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     }
     #[inline]
     fn radius(&self) -> T {
-        self.shape.radius() + self.margin
+        total(self.shape.radius(), self.margin)
     }
     fn rolling_radius(&self) -> T {
         self.shape.rolling_radius()

@@ -1,6 +1,6 @@
 //! Minkowski sums and differences.
 
-use super::{all_if_known, if_known, pair_error, pair_errors};
+use super::{all_if_known, if_known, pair_error, pair_errors, total};
 use crate::scalar::{Real, Vector};
 use crate::support::{Failure, Support};
 
@@ -36,8 +36,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         Ok(self.a.support(u)? + self.b.support(u)?)
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.a.exhaustive(u)? + self.b.exhaustive(u)?)
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let p = self.a.exhaustive(u)?.0 + self.b.exhaustive(u)?.0;
+        Ok((p, p))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -45,10 +46,10 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     }
     #[inline]
     fn radius(&self) -> T {
-        self.a.radius() + self.b.radius()
+        total(self.a.radius(), self.b.radius())
     }
     fn rolling_radius(&self) -> T {
-        self.a.rolling_radius() + self.b.rolling_radius()
+        total(self.a.rolling_radius(), self.b.rolling_radius())
     }
     fn extent(&self) -> T {
         let (a, b) = (self.a.extent(), self.b.extent());
@@ -58,7 +59,7 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         self.a.mirrored(signs) && self.b.mirrored(signs)
     }
     fn error(&self) -> T {
-        pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())
     }
     fn errors(&self) -> Vector<T, N> {
         pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
@@ -108,8 +109,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         Ok((a - self.b.support(&-u)?, a))
     }
     #[inline]
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.a.exhaustive(u)? - self.b.exhaustive(&-u)?)
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let a = self.a.exhaustive(u)?.0;
+        Ok((a - self.b.exhaustive(&-u)?.0, a))
     }
     #[inline]
     fn has_shortcuts(&self) -> bool {
@@ -117,10 +119,10 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     }
     #[inline]
     fn radius(&self) -> T {
-        self.a.radius() + self.b.radius()
+        total(self.a.radius(), self.b.radius())
     }
     fn rolling_radius(&self) -> T {
-        self.a.rolling_radius() + self.b.rolling_radius()
+        total(self.a.rolling_radius(), self.b.rolling_radius())
     }
     fn extent(&self) -> T {
         let (a, b) = (self.a.extent(), self.b.extent());
@@ -130,7 +132,7 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         self.a.mirrored(signs) && self.b.mirrored(signs)
     }
     fn error(&self) -> T {
-        pair_error(self.a.error() + self.b.error(), self.a.extent() + self.b.extent())
+        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())
     }
     fn errors(&self) -> Vector<T, N> {
         pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
@@ -165,7 +167,7 @@ mod tests {
             let (p, witness) = difference.support_with_witness(&u).unwrap();
             assert!((p.dot(&u) - all(-1.0)).abs() < 1e-15 * 10.0);
             assert_eq!(witness, pa.support(&u).unwrap());
-            assert_eq!(p, difference.exhaustive(&u).unwrap());
+            assert_eq!((p, witness), difference.exhaustive(&u).unwrap());
         }
     }
 

@@ -5,14 +5,14 @@
 //! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
-use super::super::super::generic::{aligned, array, flag, shared};
+use super::super::super::generic::{aligned, array, clear_gaps, flag, gaps, length, put, shared};
 use super::super::super::grasp::{
     QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
 };
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
+use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
 use crate::grasp::{
     ActiveForces, Contact, ContactError, Friction, GraspError, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace,
-    WrenchFrame, default_tolerance,
+    WrenchFrame, default_tolerance, usable,
 };
 use crate::scalar::Vector;
 
@@ -45,6 +45,8 @@ pub struct qdist_contact_f32 {
     pub jacobian: [f32; 32],
 }
 
+gaps!(qdist_contact_f32, joints..jacobian);
+
 /// Wrenches are (force, moment about `reference` / `torque_scale`).
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -69,6 +71,8 @@ pub struct qdist_primitive_f32 {
     pub empty: u32,
 }
 
+gaps!(qdist_primitive_f32, empty..);
+
 /// What the joints of a finger can do about a contact.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -82,6 +86,8 @@ pub struct qdist_active_f32 {
     /// 1 less the square of the friction that the force in the middle needs; below 0: the joints press outside of the friction cone.
     pub delta: f32,
 }
+
+gaps!(qdist_active_f32, dimension..delta);
 
 impl qdist_contact_f32 {
     pub(super) fn checked(&self) -> Result<Contact<f32>, ContactError> {
@@ -128,6 +134,19 @@ const _: () = assert!(size_of::<qdist_primitive_f32>() == size_of::<Primitive<f3
 const _: () = assert!(align_of::<qdist_primitive_f32>() == align_of::<Primitive<f32>>());
 
 impl qdist_primitive_f32 {
+    /// The list, with all numbers checked: finite, and as small as those of contacts.
+    pub(super) fn checked(list: &[Self]) -> Check<&[Primitive<f32>]> {
+        for primitive in list {
+            let numbers = primitive.center.iter().chain(&primitive.disc).chain([&primitive.rounding]);
+            if !usable(numbers) {
+                return Err(QDIST_ERROR_CONTACT_WRENCH);
+            }
+            length(primitive.rounding)?;
+            flag(primitive.empty)?;
+        }
+        Ok(Self::list(list))
+    }
+
     /// Unchecked: numbers that are none end a query.
     pub(super) fn list(list: &[Self]) -> &[Primitive<f32>] {
         // SAFETY: both are `repr(C)` with the same numbers in the same order, of which any bits are legal.
@@ -210,7 +229,11 @@ unsafe fn collect(
     for (index, contact) in numbered() {
         if let Ok(made) = primitive(contact, &frame) {
             // SAFETY: the caller's promise: room for `count`.
-            unsafe { primitives.cast::<Primitive<f32>>().add(index).write(made) };
+            unsafe {
+                let to = primitives.add(index);
+                to.cast::<Primitive<f32>>().write(made);
+                clear_gaps(to);
+            }
         }
     }
     Ok(())
@@ -238,7 +261,7 @@ pub unsafe extern "C" fn qdist_active_forces_f32(
             delta: forces.delta().unwrap_or(-1.0),
         };
         // SAFETY: checked.
-        unsafe { active.write(found) };
+        unsafe { put(active, found) };
         Ok(())
     };
     status(ask())
@@ -261,7 +284,8 @@ pub unsafe extern "C" fn qdist_wrench_subspace_f32(
         aligned(basis)?;
         // SAFETY: what the header asks of the caller.
         let list = unsafe { array(primitives, Some(count as usize)) }?;
-        let found = Subspace::new(qdist_primitive_f32::list(list), tolerance(rank_tolerance)).map_err(from_contact)?;
+        let found =
+            Subspace::new(qdist_primitive_f32::checked(list)?, tolerance(rank_tolerance)).map_err(from_contact)?;
         let axes = found.basis().iter().flatten().copied();
         for (index, x) in axes.chain(core::iter::repeat(0.0)).take(36).enumerate() {
             // SAFETY: what the header asks of the caller: room for 36 numbers.

@@ -6,7 +6,7 @@
 //! A preset is what one tool does, as read in its source; Q is the unit ball in all of them. Fill in position, normal and friction of each
 //! contact, let the preset complete it, make pyramids with its frame and layout, and a set of them with its norm.
 
-use super::super::super::generic::{aligned, array, coordinates, farthest, in_range, lengths, shared};
+use super::super::super::generic::{aligned, array, farthest, gaps, in_range, lengths, put, shared};
 use super::super::super::grasp::{
     QDIST_HARD, QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_DEX_NET, QDIST_LAYOUT_GRASPIT, QDIST_LAYOUT_INSCRIBED,
     QDIST_SOFT, QDIST_TOOL_DEX_NET, QDIST_TOOL_FROGGER, QDIST_TOOL_GRASPIT, from_contact, from_grasp, from_norm,
@@ -20,7 +20,7 @@ use super::super::sets::{qdist_set_f32, room};
 use super::contacts::{qdist_contact_f32, qdist_wrench_frame_f32};
 use crate::grasp::{
     Contact, ContactError, Contribution, Friction, GraspError, Layout, Norm, Preset, PyramidalCone, WrenchFrame,
-    WrenchSet, min_weight, opposed,
+    WrenchSet, min_weight, opposed, usable,
 };
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector};
@@ -65,6 +65,8 @@ pub struct qdist_pyramid_f32 {
     pub extent: f32,
     pub error: f32,
 }
+
+gaps!(qdist_pyramid_f32, count..extent, error..);
 
 /// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.
 #[repr(C)]
@@ -279,7 +281,7 @@ pub unsafe extern "C" fn qdist_preset_contact_f32(
         let [o, t] = made.tangents();
         let tangents = [o.x, o.y, o.z, t.x, t.y, t.z];
         // SAFETY: checked.
-        unsafe { contact.write(qdist_contact_f32 { tangents, force_cap: made.force_cap(), ..own }) };
+        unsafe { put(contact, qdist_contact_f32 { tangents, force_cap: made.force_cap(), ..own }) };
         Ok(())
     };
     status(complete())
@@ -374,7 +376,7 @@ pub unsafe extern "C" fn qdist_pyramids_f32(
                 let made = contact.checked().and_then(make).map_err(|error| refuse(index, error))?;
                 if write {
                     // SAFETY: what the header asks of the caller: room for `count`.
-                    unsafe { pyramids.add(index).write(made) };
+                    unsafe { put(pyramids.add(index), made) };
                 }
             }
         }
@@ -404,9 +406,12 @@ pub unsafe extern "C" fn qdist_set_pyramid_wrenches_f32(
             (wrenches.pyramids()?, checked_norm(wrenches.norm)?)
         };
         for pyramid in pyramids {
-            coordinates(pyramid.edges()).map_err(|_| QDIST_ERROR_CONTACT_WRENCH)?;
+            if !usable(pyramid.edges().iter()) {
+                return Err(QDIST_ERROR_CONTACT_WRENCH);
+            }
         }
         let checked = WrenchSet::new(pyramids, norm);
+        lengths([checked.extent(), checked.error()])?;
         let made = qdist_set_f32 {
             support: Some(qdist_pyramid_wrenches_support_f32),
             exhaustive: None,
@@ -418,7 +423,7 @@ pub unsafe extern "C" fn qdist_set_pyramid_wrenches_f32(
             dimension: 6,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
@@ -461,10 +466,12 @@ pub unsafe extern "C" fn qdist_opposed_mean_f32(
         // SAFETY: what the header asks of the caller.
         let list = unsafe { CheckedPyramid::list(array(pyramids, Some(count as usize))?) }?;
         let edges = || list.iter().flat_map(|pyramid| pyramid.edges().as_chunks::<6>().0);
-        edges().try_for_each(|edge| coordinates(edge)).map_err(|_| QDIST_ERROR_CONTACT_WRENCH)?;
+        if !edges().all(|edge| usable(edge.iter())) {
+            return Err(QDIST_ERROR_CONTACT_WRENCH);
+        }
         let found = opposed(edges()).ok_or(QDIST_ERROR_ARGUMENT)?;
         // SAFETY: checked.
-        unsafe { segment.write(qdist_segment_gauge_f32 { end: found.vertex(0).into(), dimension: 6 }) };
+        unsafe { put(segment, qdist_segment_gauge_f32 { end: found.vertex(0).into(), dimension: 6 }) };
         Ok(())
     };
     status(make())

@@ -4,10 +4,10 @@
 //! Force closure, and the best of many grasps. The depth itself, contact forces for one wrench (a segment as Q) and "is it at least so
 //! much?" (use_threshold of the options) are what qdist_solve6 answers.
 
-use super::super::super::generic::{aligned, array, known_size, padded, shared};
+use super::super::super::generic::{aligned, array, gaps, known_size, padded, put, shared};
 use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
 use super::super::super::handle::{self, qdist_solver};
-use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
+use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
 use super::super::gauges::{CheckedGauge, qdist_gauge_f32};
 use super::super::query::{convert, from_answer, qdist_options_f32, qdist_result_f32};
 use super::super::sets::qdist_set_f32;
@@ -41,6 +41,8 @@ pub struct qdist_best_f32 {
     /// Its result; its struct_size, too, is set before the call.
     pub result: qdist_result_f32,
 }
+
+gaps!(qdist_best_f32, result.callback_code..);
 
 /// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
 /// support function. Tolerances and threshold of the options are not used.
@@ -103,6 +105,7 @@ pub unsafe extern "C" fn qdist_best_of6_f32(
         let checked = sets.iter().filter_map(|set| unsafe { set.checked::<6>() }.ok());
         let found = deadline.during(|interrupt| solver.best_of_until(checked, q.gauge(), &options, interrupt));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
+        overflow(found.answer.failure)?;
         let made = qdist_best_f32 {
             struct_size: size_of::<qdist_best_f32>() as u32,
             index: found.index as u32,
@@ -110,7 +113,7 @@ pub unsafe extern "C" fn qdist_best_of6_f32(
             result: from_answer(&found.answer, q.code(found.answer.failure)),
         };
         // SAFETY: checked.
-        unsafe { best.write(made) };
+        unsafe { put(best, made) };
         if found.answer.failure != 0 { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
     };
     status(solve())

@@ -3,10 +3,10 @@
 //! A finger as a whole: up to four contacts that share their joints, whose torques have limits. What it can exert is the sum of its
 //! contacts' wrenches over all contact forces (f_1, ..., f_k) within friction cones, force caps and |sum of J_i^T f_i| <= limits, joint by
 //! joint; with QDIST_FORCE_MODEL_ACTIVE only those that the joints make at all contacts together. Its support function is a small convex
-//! program, each time with a proof: 0.1 microseconds where the limits do not count, else 10 for one contact to 130 for four, with up to
-//! 43 KB of stack in double. Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
+//! program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`make figures`),
+//! with up to 43 KB of stack in double (`make stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
 
-use super::super::super::generic::{aligned, array, finite, shared};
+use super::super::super::generic::{aligned, array, finite, put, shared};
 use super::super::super::grasp::{force_model, from_grasp, norm as checked_norm, qdist_force_model, qdist_norm};
 use super::super::super::status::{Check, QDIST_ERROR_CALLBACK, QDIST_ERROR_FINGER, qdist_status, status};
 use super::super::sets::{qdist_set_f64, room};
@@ -116,7 +116,8 @@ impl qdist_finger_wrenches_f64 {
 /// qdist_active_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
 /// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
 ///
-/// 5 microseconds where no limit counts; up to 5 milliseconds, with 80 KB of stack in double, where there are limits and several contacts.
+/// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
+/// figures`, `make stack`).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_finger_init_f64(
     finger: *mut qdist_finger_f64,
@@ -197,7 +198,7 @@ pub unsafe extern "C" fn qdist_set_finger_wrenches_f64(
             dimension: 6,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())

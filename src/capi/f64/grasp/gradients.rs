@@ -1,7 +1,7 @@
 //! GRADIENTS
 //!
 //! How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
-//! Newton's method, in some 10 to 100 microseconds; where d has no gradient there, `kink` says why.
+//! Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why.
 
 use super::super::super::generic::{aligned, array, flag, known_size, padded, shared};
 use super::super::super::grasp::{from_contact, from_grasp, kink, qdist_kink};

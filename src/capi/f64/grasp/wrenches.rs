@@ -5,9 +5,9 @@
 //! in the smallest subspace, for the active wrenches of fingers that cannot move in all directions; a segment as Q asks how large one wrench
 //! may be. In the result, `direction` is the weakest one, and the wrench of d * Q that is farthest along it the one that is hardest to exert.
 
-use super::super::super::generic::{aligned, array, coordinates, flag, length, shared};
+use super::super::super::generic::{aligned, array, lengths, put, shared};
 use super::super::super::grasp::{norm, qdist_norm};
-use super::super::super::status::{Check, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
+use super::super::super::status::{Check, qdist_status, status};
 use super::super::sets::{qdist_set_f64, room};
 use super::contacts::qdist_primitive_f64;
 use crate::grasp::WrenchSet;
@@ -32,12 +32,7 @@ impl qdist_wrenches_f64 {
         let norm = norm(self.norm)?;
         // SAFETY: the caller's promise.
         let list = unsafe { array(self.primitives, Some(self.count as usize)) }?;
-        for primitive in list {
-            coordinates(&primitive.center).and(coordinates(&primitive.disc)).map_err(|_| QDIST_ERROR_CONTACT_WRENCH)?;
-            length(primitive.rounding)?;
-            flag(primitive.empty)?;
-        }
-        Ok(WrenchSet::new(qdist_primitive_f64::list(list), norm))
+        Ok(WrenchSet::new(qdist_primitive_f64::checked(list)?, norm))
     }
 
     /// The same without what takes a pass over the list.
@@ -61,6 +56,7 @@ pub unsafe extern "C" fn qdist_set_wrenches_f64(
         aligned(set)?;
         // SAFETY: what the header asks of the caller.
         let checked = unsafe { shared(wrenches)?.checked() }?;
+        lengths([checked.extent(), checked.error()])?;
         let made = qdist_set_f64 {
             support: Some(qdist_wrenches_support_f64),
             exhaustive: None,
@@ -72,7 +68,7 @@ pub unsafe extern "C" fn qdist_set_wrenches_f64(
             dimension: 6,
         };
         // SAFETY: checked.
-        unsafe { set.write(made) };
+        unsafe { put(set, made) };
         Ok(())
     };
     status(fill())
