@@ -1,4 +1,4 @@
-//! Translational penetration depth of two bodies in space: the query that collision code asks.
+//! Translational penetration depth of two bodies in space or in the plane: the query that collision code asks.
 //!
 //! The Minkowski difference M = A - B = { a - b } contains the origin exactly when the bodies overlap. Moving B by x turns M into
 //! M - x, so the shortest x that separates them ends on the boundary of M:
@@ -8,7 +8,8 @@
 //! ```
 //!
 //! which is d_Q(M) for the unit ball Q; where the bodies are apart, the same minimum is minus their distance.
-//! The minimiser u points from A to B.
+//! The minimiser u points from A to B. In the plane everything is the same, with polygons for polyhedra; only bodies that share an
+//! axis of revolution, and the plan for them, are of space alone.
 
 use core::fmt;
 
@@ -23,6 +24,8 @@ use nalgebra::SMatrix;
 
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
+/// A 2 x 2 matrix.
+pub type Matrix2<T> = SMatrix<T, 2, 2>;
 
 /// Why a body cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,12 +47,13 @@ impl fmt::Display for BodyError {
 
 impl core::error::Error for BodyError {}
 
-/// A set placed in the world: x -> rotation x + translation.
+/// A set placed in the world, which is space or the plane (`N` = 2): x -> rotation x + translation. A rotation of the plane by
+/// the angle of cosine c and sine s is the matrix (c, -s; s, c).
 #[derive(Clone, Copy)]
-pub struct Body<'a, T: Real> {
-    shape: &'a dyn Support<T, 3>,
-    rotation: Matrix3<T>,
-    translation: Vector<T, 3>,
+pub struct Body<'a, T: Real, const N: usize = 3> {
+    shape: &'a dyn Support<T, N>,
+    rotation: SMatrix<T, N, N>,
+    translation: Vector<T, N>,
     /// Radius of the ball swept over the placed core.
     ball: T,
     /// Radius of the ball that goes into the support points instead: see `Support::rolling_radius`.
@@ -59,22 +63,23 @@ pub struct Body<'a, T: Real> {
 /// A matrix whose columns are orthonormal to so many roundoffs leaves balls what they are.
 const SKEW_ROUNDOFFS: usize = 32;
 
-impl<'a, T: Real> Body<'a, T> {
+impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     /// Places a shape. The matrix is used as it is given: the body is the image of the shape, except that balls (spheres,
     /// the rounding of capsules, margins) stay balls.
     ///
     /// # Errors
     /// [`BodyError`], naming what is wrong.
     pub fn new(
-        shape: &'a dyn Support<T, 3>,
-        rotation: Matrix3<T>,
-        translation: Vector<T, 3>,
+        shape: &'a dyn Support<T, N>,
+        rotation: SMatrix<T, N, N>,
+        translation: Vector<T, N>,
     ) -> Result<Self, BodyError> {
+        const { assert!(N == 2 || N == 3, "bodies are of dimension 2 or 3") };
         if !rotation.iter().all(|x| x.finite()) || !finite(&translation) {
             return Err(BodyError::NonFinite);
         }
         let skew = skew(&rotation);
-        if !(skew <= T::of(1e-4)) || rotation.determinant() < T::zero() {
+        if !(skew <= T::of(1e-4)) || is_reflection(&rotation) {
             return Err(BodyError::Rotation);
         }
         let mut body = Body { rotation, ..Body::at(shape, translation) };
@@ -86,13 +91,13 @@ impl<'a, T: Real> Body<'a, T> {
     }
 
     /// Places a shape without turning it.
-    pub fn at(shape: &'a dyn Support<T, 3>, translation: Vector<T, 3>) -> Self {
-        Body { shape, rotation: Matrix3::identity(), translation, ball: shape.radius(), inflation: T::zero() }
+    pub fn at(shape: &'a dyn Support<T, N>, translation: Vector<T, N>) -> Self {
+        Body { shape, rotation: SMatrix::identity(), translation, ball: shape.radius(), inflation: T::zero() }
     }
 
     /// Where the body's support points are measured from, in its own frame, and an upper bound of the core's distance
-    /// from there: the shape's own word, else half the diagonal of the box that six support calls draw around it.
-    fn anchor(&self) -> Result<Anchor<T>, Failure> {
+    /// from there: the shape's own word, else half the diagonal of the box that support calls along the axes draw around it.
+    fn anchor(&self) -> Result<Anchor<T, N>, Failure> {
         let mut anchor = self.core_anchor()?;
         // What the shape says of itself, NaN refused. (Sums would hide a negative length; what else is infinite is found in them.)
         let zero = T::zero();
@@ -105,7 +110,7 @@ impl<'a, T: Real> Body<'a, T> {
         Ok(anchor)
     }
 
-    fn core_anchor(&self) -> Result<Anchor<T>, Failure> {
+    fn core_anchor(&self) -> Result<Anchor<T, N>, Failure> {
         if let Some((center, extent)) = self.shape.center() {
             if !finite(&center) {
                 return Err(Failure(NOT_FINITE));
@@ -116,10 +121,10 @@ impl<'a, T: Real> Body<'a, T> {
         if known != T::zero() {
             return Ok(Anchor { center: None, extent: known, error: self.shape.error(), calls: 0 });
         }
-        let mut corner = Vector::<T, 3>::zeros();
-        for i in 0..3 {
+        let mut corner = Vector::<T, N>::zeros();
+        for i in 0..N {
             for sign in [T::one(), -T::one()] {
-                let mut axis = Vector::<T, 3>::zeros();
+                let mut axis = Vector::<T, N>::zeros();
                 axis[i] = sign;
                 // Without shortcuts, which may fall short. Written so that NaN is kept.
                 let reach = self.shape.exhaustive(&axis)?.0[i].abs();
@@ -128,44 +133,70 @@ impl<'a, T: Real> Body<'a, T> {
         }
         let extent = norm(&corner);
         // What `Support::error` would be, had the shape known its extent.
-        let error = self.shape.error().at_least(T::count(48) * T::ROUNDOFF * extent);
-        Ok(Anchor { center: None, extent, error, calls: 6 })
+        let error = self.shape.error().at_least(T::count(16 * N) * T::ROUNDOFF * extent);
+        Ok(Anchor { center: None, extent, error, calls: 2 * N as u32 })
     }
 
     /// The support point relative to the placed anchor.
-    fn farthest(&self, u: &Vector<T, 3>, anchor: &Anchor<T>, exhaustive: bool) -> Result<Vector<T, 3>, Failure> {
+    fn farthest(&self, u: &Vector<T, N>, anchor: &Anchor<T, N>, exhaustive: bool) -> Result<Vector<T, N>, Failure> {
         let local = self.rotation.tr_mul(u);
         let point =
             if exhaustive { self.shape.exhaustive(&local).map(|(point, _)| point) } else { self.shape.support(&local) };
-        let [x, y, z] = match &point {
-            Ok(p) => one_by_one(p).into(),
+        let point = match &point {
+            Ok(point) => one_by_one(point),
             Err(failure) => return Err(*failure),
         };
-        let [x, y, z] = match &anchor.center {
-            Some(center) => [x - center.x, y - center.y, z - center.z],
-            None => [x, y, z],
+        let point = match &anchor.center {
+            Some(center) => point - center,
+            None => point,
         };
-        let [x, y, z] = if self.inflation > T::zero() {
+        let point = if self.inflation > T::zero() {
             let swell = self.inflation / norm(&local);
-            [x + local.x * swell, y + local.y * swell, z + local.z * swell]
+            point + local * swell
         } else {
-            [x, y, z]
+            point
         };
-        Ok(self.rotation.column(0) * x + self.rotation.column(1) * y + self.rotation.column(2) * z)
+        Ok(turned(&self.rotation, &point))
     }
 }
 
+/// R x, the columns added from the first to the last.
+#[inline(always)]
+fn turned<T: Real, const N: usize>(rotation: &SMatrix<T, N, N>, x: &Vector<T, N>) -> Vector<T, N> {
+    let mut sum = rotation.column(0) * x[0];
+    for j in 1..N {
+        sum += rotation.column(j) * x[j];
+    }
+    sum
+}
+
 /// The largest entry of |R^T R - I|.
-fn skew<T: Real>(rotation: &Matrix3<T>) -> T {
-    let [x, y, z] = [rotation.column(0), rotation.column(1), rotation.column(2)];
-    let lengths = [x.dot(&x) - T::one(), y.dot(&y) - T::one(), z.dot(&z) - T::one()];
-    let angles = [x.dot(&y), y.dot(&z), z.dot(&x)];
-    lengths.iter().chain(&angles).fold(T::zero(), |most, v| most.at_least(v.abs()))
+fn skew<T: Real, const N: usize>(rotation: &SMatrix<T, N, N>) -> T {
+    let mut most = T::zero();
+    for i in 0..N {
+        let column = rotation.column(i);
+        most = most.at_least((column.dot(&column) - T::one()).abs());
+        for j in i + 1..N {
+            most = most.at_least(column.dot(&rotation.column(j)).abs());
+        }
+    }
+    most
+}
+
+/// Does an almost orthonormal matrix of dimension 2 or 3 turn right into left?
+fn is_reflection<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+    let minor = |i: usize, j: usize| matrix[(i, 0)] * matrix[(j, 1)] - matrix[(j, 0)] * matrix[(i, 1)];
+    let determinant = if N == 2 {
+        minor(0, 1)
+    } else {
+        minor(1, 2) * matrix[(0, 2)] + minor(2, 0) * matrix[(1, 2)] + minor(0, 1) * matrix[(2, 2)]
+    };
+    determinant < T::zero()
 }
 
 /// Where a body is measured from: the origin of its frame, or a point near the shape when that is far away.
-struct Anchor<T: Real> {
-    center: Option<Vector<T, 3>>,
+struct Anchor<T: Real, const N: usize> {
+    center: Option<Vector<T, N>>,
     extent: T,
     /// Error of the shape's support function.
     error: T,
@@ -175,19 +206,22 @@ struct Anchor<T: Real> {
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
 /// from the world's origin nor with that of their vertices from their frames'.
-struct Pair<'p, 'a, T: Real> {
-    a: &'p Body<'a, T>,
-    b: &'p Body<'a, T>,
-    on_a: Anchor<T>,
-    on_b: Anchor<T>,
+struct Pair<'p, 'a, T: Real, const N: usize> {
+    a: &'p Body<'a, T, N>,
+    b: &'p Body<'a, T, N>,
+    on_a: Anchor<T, N>,
+    on_b: Anchor<T, N>,
     /// A's anchor minus B's, in the world.
-    offset: Vector<T, 3>,
+    offset: Vector<T, N>,
     extent: T,
     error: T,
 }
 
-impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
-    fn new(a: &'p Body<'a, T>, b: &'p Body<'a, T>) -> Result<Self, Failure> {
+impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
+    fn new(a: &'p Body<'a, T, N>, b: &'p Body<'a, T, N>) -> Result<Self, Failure> {
+        if !finite(&a.translation) || !finite(&b.translation) {
+            return Err(Failure(NOT_FINITE));
+        }
         let (on_a, on_b) = (a.anchor()?, b.anchor()?);
         let (offset, left) = if on_a.center.is_none() && on_b.center.is_none() {
             (a.translation - b.translation, T::zero())
@@ -196,7 +230,7 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         };
         let cores = on_a.extent + on_b.extent;
         let apart = norm(&offset);
-        // Beside the shapes' own errors, for each core of extent E (unit roundoff u): the local direction is off by
+        // Stated for space; the plane needs less. Beside the shapes' own errors, for each core of extent E (unit roundoff u): the local direction is off by
         // at most 5.2 u, which costs that times the diameter 2 E; the anchor's subtraction u E; the product with the rotation 5.2 u E.
         // The two additions cost u times the sizes of their sums, the rounding of `offset` u of its own (2 u when
         // anchors are involved). A rotation that is off by 1e-4 stretches all of it by less than 1 %.
@@ -210,7 +244,12 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
         Ok(Pair { a, b, on_a, on_b, offset, extent, error })
     }
 
-    fn sample(&self, u: &Vector<T, 3>, exhaustive: bool) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+    /// Calls of each body's support function that were made to measure it.
+    fn calls(&self) -> u32 {
+        self.on_a.calls.max(self.on_b.calls)
+    }
+
+    fn sample(&self, u: &Vector<T, N>, exhaustive: bool) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         let on_a = self.a.farthest(u, &self.on_a, exhaustive)?;
         let on_b = self.b.farthest(&-u, &self.on_b, exhaustive)?;
         Ok((on_a - on_b + self.offset, on_a))
@@ -218,18 +257,23 @@ impl<'p, 'a, T: Real> Pair<'p, 'a, T> {
 }
 
 /// (t_a + R_a c_a) - (t_b + R_b c_b), computed as in twice the precision: the terms may be large and cancel. And a bound
-/// of what that leaves beside the rounding of the result: u^2 times the terms, eight in each of three coordinates.
+/// of what that leaves beside the rounding of the result: u^2 times the terms, eight in each of at most three coordinates.
 #[cold]
-fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on_b: &Anchor<T>) -> (Vector<T, 3>, T) {
-    let mut offset = Vector::<T, 3>::zeros();
-    let far = |anchor: &Anchor<T>| anchor.center.map_or(T::zero(), |center| norm(&center));
+fn anchor_offset<T: Real, const N: usize>(
+    a: &Body<'_, T, N>,
+    on_a: &Anchor<T, N>,
+    b: &Body<'_, T, N>,
+    on_b: &Anchor<T, N>,
+) -> (Vector<T, N>, T) {
+    let mut offset = Vector::<T, N>::zeros();
+    let far = |anchor: &Anchor<T, N>| anchor.center.map_or(T::zero(), |center| norm(&center));
     let terms = norm(&a.translation) + norm(&b.translation) + far(on_a) + far(on_b);
-    for i in 0..3 {
+    for i in 0..N {
         let mut sum = Accumulator::new(a.translation[i]);
         sum.add(-b.translation[i]);
         for (body, anchor, sign) in [(a, on_a, T::one()), (b, on_b, -T::one())] {
             if let Some(center) = &anchor.center {
-                for j in 0..3 {
+                for j in 0..N {
                     sum.add_product(body.rotation[(i, j)], sign * center[j]);
                 }
             }
@@ -242,7 +286,7 @@ fn anchor_offset<T: Real>(a: &Body<'_, T>, on_a: &Anchor<T>, b: &Body<'_, T>, on
 /// Lengths that the common axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
 const AXIS_ROUNDOFFS: usize = 64;
 
-impl<T: Real> Pair<'_, '_, T> {
+impl<T: Real> Pair<'_, '_, T, 3> {
     /// The axis that both bodies turn about, if there is one up to rounding; the deviation goes into `error`.
     fn common_axis(&mut self) -> Option<Vector<T, 3>> {
         let axis = |body: &Body<'_, T>| Vector::<T, 3>::from(body.rotation.column(2));
@@ -269,14 +313,14 @@ impl<T: Real> Pair<'_, '_, T> {
     }
 }
 
-impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
-    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+impl<T: Real, const N: usize> Support<T, N> for Pair<'_, '_, T, N> {
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
         Ok(self.sample(u, false)?.0)
     }
-    fn support_with_witness(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+    fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.sample(u, false)
     }
-    fn exhaustive(&self, u: &Vector<T, 3>) -> Result<(Vector<T, 3>, Vector<T, 3>), Failure> {
+    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
         self.sample(u, true)
     }
     fn has_shortcuts(&self) -> bool {
@@ -295,7 +339,7 @@ impl<T: Real> Support<T, 3> for Pair<'_, '_, T> {
 
 /// The penetration of two bodies, or their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Depth<T> {
+pub struct Depth<T, const N: usize = 3> {
     /// What was concluded.
     pub outcome: Outcome,
     /// The signed depth is not less. Positive: penetration; negative: minus the distance.
@@ -303,12 +347,12 @@ pub struct Depth<T> {
     /// The signed depth is not more.
     pub upper: T,
     /// Unit vector from A to B, which proves `upper`: after moving B by `upper * normal` the bodies do not overlap.
-    pub normal: Vector<T, 3>,
+    pub normal: Vector<T, N>,
     /// Witness on A, world frame.
-    pub point_a: Vector<T, 3>,
+    pub point_a: Vector<T, N>,
     /// Witness on B, world frame. Where converged, `point_a - point_b` is depth * normal: in length up to the tolerance, sideways up
     /// to a few times its square root. The points that touch after B is moved, or the nearest points of separated bodies.
-    pub point_b: Vector<T, 3>,
+    pub point_b: Vector<T, N>,
     /// Affine dimension of the cores' difference, as far as it was found out.
     pub dimension: usize,
     /// Points added, in expansion and distance iteration.
@@ -341,16 +385,13 @@ impl<T: Real> Solver<'_, T, 3> {
         options: &Options<T, 3>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T> {
-        if !finite(&a.translation) || !finite(&b.translation) {
-            return Depth::failed(Failure(NOT_FINITE));
-        }
         let mut pair = match Pair::new(a, b) {
             Ok(pair) => pair,
             Err(failure) => return Depth::failed(failure),
         };
-        let ball = Ball::unit();
-        let mut calls = pair.on_a.calls.max(pair.on_b.calls);
+        let mut calls = pair.calls();
         if let Some(axis) = pair.common_axis() {
+            let ball = Ball::unit();
             let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
             query.interrupt = interrupt;
             query.count_calls(calls);
@@ -361,21 +402,58 @@ impl<T: Real> Solver<'_, T, 3> {
             }
             calls = query.support_calls();
         }
+        self.expand_pair(&pair, options, interrupt, calls)
+    }
+}
+
+impl<T: Real> Solver<'_, T, 2> {
+    /// Translational penetration depth of two bodies in the plane, or their distance, as a bracket with witness points.
+    ///
+    /// Everything is as in [space](Solver::<T, 3>::depth), with polygons for polyhedra.
+    pub fn depth(&mut self, a: &Body<'_, T, 2>, b: &Body<'_, T, 2>, options: &Options<T, 2>) -> Depth<T, 2> {
+        self.depth_until(a, b, options, None)
+    }
+
+    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
+    pub fn depth_until(
+        &mut self,
+        a: &Body<'_, T, 2>,
+        b: &Body<'_, T, 2>,
+        options: &Options<T, 2>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T, 2> {
+        match Pair::new(a, b) {
+            Ok(pair) => self.expand_pair(&pair, options, interrupt, pair.calls()),
+            Err(failure) => Depth::failed(failure),
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// The depth of a pair by expansion, or by distance where that decides. So many calls have been made before.
+    fn expand_pair(
+        &mut self,
+        pair: &Pair<'_, '_, T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+        calls: u32,
+    ) -> Depth<T, N> {
+        let ball = Ball::unit();
         let mut options = *options;
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), options);
+        let (mut query, checked) = Query::new(pair, &ball, pair.radius(), options);
         query.seeks_rivals = false;
         query.interrupt = interrupt;
         query.count_calls(calls);
         let answer = self.expand_only((query, checked));
-        Depth::new(&answer, &pair)
+        Depth::new(&answer, pair)
     }
 }
 
-impl<T: Real> Depth<T> {
-    fn new(answer: &Answer<T, 3>, pair: &Pair<'_, '_, T>) -> Self {
+impl<T: Real, const N: usize> Depth<T, N> {
+    fn new(answer: &Answer<T, N>, pair: &Pair<'_, '_, T, N>) -> Self {
         let n = answer.direction;
         let (a, b) = (pair.a, pair.b);
         let origin = a.translation + pair.on_a.center.map_or(Vector::zeros(), |center| a.rotation * center);

@@ -1,4 +1,4 @@
-//! Solids of revolution in three dimensions. The axis is z, the centre of the height is the origin.
+//! Solids of revolution in three dimensions. The axis is z, the centre of the height is the origin. (The capsule exists in the plane too.)
 
 use super::load::one_by_one;
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
@@ -59,8 +59,8 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     }
 }
 
-/// A capsule: all points within `radius` of the segment from `(0, 0, -half_height)` to `(0, 0, half_height)`.
-/// The core is the segment, the radius is the ball term. Exact: `error` is 0.
+/// A capsule: all points within `radius` of the segment from `-half_height` to `half_height` on the last axis, which is z in space
+/// and y in the plane (`N` = 2). The core is the segment, the radius is the ball term. Exact: `error` is 0.
 ///
 /// ```
 /// use qdist::{scalar::Vector, support::{Capsule, Support}};
@@ -69,12 +69,12 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
 /// assert_eq!(c.radius(), 0.5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Capsule<T> {
+pub struct Capsule<T, const N: usize = 3> {
     radius: T,
     half_height: T,
 }
 
-impl<T: Real> Capsule<T> {
+impl<T: Real, const N: usize> Capsule<T, N> {
     /// The capsule of this radius and half height of the segment (without the caps), both >= 0.
     ///
     /// # Errors
@@ -91,10 +91,12 @@ impl<T: Real> Capsule<T> {
     }
 }
 
-impl<T: Real> Support<T, 3> for Capsule<T> {
+impl<T: Real, const N: usize> Support<T, N> for Capsule<T, N> {
     #[inline]
-    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        Ok(Vector::<T, 3>::new(T::zero(), T::zero(), signed(self.half_height, u.z)))
+    fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
+        let mut end = Vector::zeros();
+        end[N - 1] = signed(self.half_height, u[N - 1]);
+        Ok(end)
     }
     #[inline]
     fn radius(&self) -> T {
@@ -104,7 +106,7 @@ impl<T: Real> Support<T, 3> for Capsule<T> {
         self.half_height
     }
     fn symmetry(&self) -> Symmetry {
-        Symmetry::Axis
+        if N == 3 { Symmetry::Axis } else { Symmetry::None }
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true

@@ -55,8 +55,8 @@ impl<T: Real, const N: usize> From<&Answer<T, N>> for Seen {
     }
 }
 
-impl<T: Real> From<&Depth<T>> for Seen {
-    fn from(a: &Depth<T>) -> Self {
+impl<T: Real, const N: usize> From<&Depth<T, N>> for Seen {
+    fn from(a: &Depth<T, N>) -> Self {
         Seen {
             outcome: a.outcome,
             lower: a.lower.to_f64(),
