@@ -32,7 +32,7 @@ mod shapes;
 mod solids;
 
 pub(crate) use combine::total;
-pub use combine::{Difference, Linear, Margin, Rigid, Scaled, Sum};
+pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
 pub use graph::{HullGraph, graph_len};
 #[cfg(feature = "capi")]

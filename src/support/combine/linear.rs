@@ -100,7 +100,7 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Linear<S, T, N
 
 /// Half the diagonal of the box that support calls along the axes draw around the core: an upper bound of |x|. Infinite when
 /// a call fails.
-fn measured_extent<T: Real, const N: usize>(shape: &impl Support<T, N>) -> T {
+pub(super) fn measured_extent<T: Real, const N: usize>(shape: &impl Support<T, N>) -> T {
     let mut corner = Vector::<T, N>::zeros();
     for i in 0..N {
         for sign in [T::one(), -T::one()] {

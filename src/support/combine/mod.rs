@@ -1,4 +1,4 @@
-//! Sets made of sets: moved, mapped, added, subtracted, scaled, grown.
+//! Sets made of sets: moved, mapped, added, subtracted, joined, scaled, grown.
 //!
 //! A combination owns its parts; since a reference to a set is a set, `Rigid::new(&shape, ...)` borrows.
 //!
@@ -17,11 +17,13 @@ use crate::scalar::{Real, Vector};
 
 #[cfg(test)]
 mod dice;
+mod join;
 mod linear;
 mod rigid;
 mod scaled;
 mod sums;
 
+pub use join::Join;
 pub use linear::Linear;
 pub use rigid::Rigid;
 pub use scaled::{Margin, Scaled};

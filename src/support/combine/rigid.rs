@@ -4,8 +4,8 @@ use nalgebra::SMatrix;
 
 use super::{if_known, mapped, total, transposed};
 use crate::scalar::{Real, Vector};
-use crate::support::shapes::{ShapeError, above, check_numbers, length, unit};
-use crate::support::{Failure, Support};
+use crate::support::shapes::{ShapeError, above, check_numbers, length, magnitude, unit};
+use crate::support::{Failure, Support, Symmetry};
 
 /// A set moved by x -> R x + t. The ball term stays: `R core + t + radius * ball`.
 ///
@@ -15,7 +15,8 @@ use crate::support::{Failure, Support};
 /// `error`: let s >= |R| (1 for a rotation). R^T u has rounding error at most `N sqrt(N) s u |u|`, which costs twice that
 /// times E in the farthest point. R x + t has error `(N sqrt(N) s + 2) u E + 2 u |t|`. Together, with
 /// room for second order terms, `s e + (4 N sqrt(N) + 2) s u (E + |t|)`. When E is unknown, `|x| <= |p| + |t|` for each point p
-/// that the solver sees: |t| takes the place of E, and 16 N u max |p| covers the rest (N <= 15).
+/// that the solver sees: |t| takes the place of E, and 16 N u max |p| covers the rest (N <= 15). Where all entries of R are 0, 1 or -1, both
+/// products are exact, and `e + 2 u (E + |t|)` is left.
 ///
 /// ```
 /// use nalgebra::SMatrix;
@@ -36,6 +37,8 @@ pub struct Rigid<S, T, const N: usize> {
     shift: T,
     /// Is the matrix off orthonormal by more than rounding?
     skewed: bool,
+    /// Are products with the matrix rounded?
+    rounds: bool,
 }
 
 impl<S, T: Real, const N: usize> Rigid<S, T, N> {
@@ -60,7 +63,8 @@ impl<S, T: Real, const N: usize> Rigid<S, T, N> {
         if off <= T::of(1e-3) {
             let stretch = T::one() + off + T::count(N * N + 8) * T::ROUNDOFF;
             let skewed = off > T::count(16 * N) * T::ROUNDOFF;
-            Ok(Self { shape, rotation, translation, stretch, shift: length(&translation), skewed })
+            let rounds = rotation.iter().any(|x| !x.is_zero() && magnitude(*x) != T::one());
+            Ok(Self { shape, rotation, translation, stretch, shift: length(&translation), skewed, rounds })
         } else {
             Err(ShapeError::NotOrthonormal)
         }
@@ -116,9 +120,22 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
         let inner = self.shape.extent();
         if_known(&[inner], self.stretch * (inner + self.inflation()) + self.shift)
     }
+    /// Of sets that are moved along the axis only.
+    fn symmetry(&self) -> Symmetry {
+        let still = |length: &T| length.is_zero();
+        let unturned = self.rotation == SMatrix::<T, N, N>::identity();
+        match (self.shape.symmetry(), self.translation.as_slice()) {
+            (Symmetry::Full, t) if unturned && t.iter().all(still) => Symmetry::Full,
+            (Symmetry::Full | Symmetry::Axis, [x, y, _]) if unturned && still(x) && still(y) => Symmetry::Axis,
+            _ => Symmetry::None,
+        }
+    }
     fn error(&self) -> T {
         let inner = self.shape.extent();
         let reach = if inner > T::zero() { inner } else { self.shift } + self.shift + self.inflation();
+        if !self.rounds {
+            return above(self.shape.error() + T::count(2) * T::ROUNDOFF * reach, N);
+        }
         let n = T::count(4 * N) * T::count(N).root() + T::count(N + 10);
         self.stretch * above(total(self.shape.error(), n * T::ROUNDOFF * reach), N)
     }
