@@ -2,6 +2,7 @@
 //!
 //!     cargo run --release --example fuzz -- --seconds 60 [--seed 1] [--case 17]
 //!
+//! Pairs of bodies, bodies and half spaces, hulls of two bodies against a third, sets and gauges.
 //! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned,
 //! identical, touching or far away; all gauges in 2 to 6 dimensions; any capacity, tolerance, threshold and
 //! limit; callbacks that fail or return nonsense; both scalar types. For every answer:
@@ -21,14 +22,16 @@ mod common;
 
 use common::dd::{BLUR, Dd, V3, dot, norm, v3};
 use common::dice::Dice;
-use common::exact::{pair_value, searched_upper};
+use common::exact::{body_value, pair_value, searched_upper};
 use common::hull::{ExactHull, signed_depth};
 use common::memory::{Memory, Seen, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
-use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
-use qdist::{Options, Outcome, Plan, Real, Vector};
+use qdist::support::{
+    BoxShape, Ellipsoid, Failure, HalfSpace, Join, Linear, Margin, Points, Rigid, Sphere, Sum, Support,
+};
+use qdist::{Body, Options, Outcome, Plan, Real, Vector};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -88,7 +91,11 @@ fn main() {
         match kind {
             0..=3 => {
                 counts[0] += 1;
-                fuzz_pair(&mut dice);
+                match dice.below(8) {
+                    0 => fuzz_half_space(&mut dice),
+                    1 => fuzz_join(&mut dice),
+                    _ => fuzz_pair(&mut dice),
+                }
             }
             4..=6 => {
                 counts[1] += 1;
@@ -411,6 +418,99 @@ fn fuzz_pair(dice: &mut Dice) {
         if single {
             b = rounded::<f32>(&b);
         }
+    }
+}
+
+/// A body with a random shape, at most so far from the origin.
+fn random_body(dice: &mut Dice, scale: f64, far: f64) -> BodyText {
+    let rotation = random_rotation(dice);
+    let translation = std::array::from_fn(|_| far * dice.signed());
+    BodyText { shape: random_shape(dice, scale), rotation, translation }
+}
+
+fn fuzz_half_space(dice: &mut Dice) {
+    let scale = dice.decade(-6.0, 6.0);
+    let far = scale * dice.pick(&[0.0, 1.0, 1e3, 1e6]);
+    let (mut a, mut frame) = (random_body(dice, scale, far), random_body(dice, scale, far));
+    let length = dice.decade(-6.0, 6.0);
+    let normal = if dice.chance(0.5) { [0.0, 0.0, 1.0] } else { dice.direction::<3>().map(|x| x * length) };
+    let aside = scale * length * dice.signed();
+    let offset = dice.pick(&[0.0, aside]);
+    let place = CURRENT.lock().unwrap().0.clone();
+    now_at(format!("{place}\nhalf space {normal:?} {offset}\nA = {a:?}\nframe = {frame:?}"));
+    if dice.chance(0.5) {
+        (a, frame) = (rounded::<f32>(&a), rounded::<f32>(&frame));
+        run_half_space::<f32>(&a, normal, offset, &frame);
+    }
+    run_half_space::<f64>(&a, normal, offset, &frame);
+}
+
+/// Against the definition: (h_A(-w) + c + w.s) / |w|, with w = S n.
+fn run_half_space<T: Real>(a: &BodyText, normal: [f64; 3], offset: f64, frame: &BodyText) {
+    let (normal, offset) = (normal.map(exact::<T>), exact::<T>(offset));
+    let points = common::points::<T>(&a.shape);
+    let shape = common::shape(&a.shape, &points);
+    let ground = HalfSpace::<T, 3>::new(Vector::from(normal.map(T::of)), T::of(offset)).unwrap();
+    let mut memory = Memory::least::<T, 3>();
+    let options = Options::default();
+    let r = memory.solver::<T, 3>().depth(&common::body(a, &*shape), &common::body(frame, &ground), &options);
+    let seen = Seen::from(&r);
+    if let Some(text) = broken_promise(&seen, &options, 0, 0) {
+        find(&text, &format!("{r:?}"));
+    }
+    let row = |i: usize| v3([frame.rotation[3 * i], frame.rotation[3 * i + 1], frame.rotation[3 * i + 2]]);
+    let w: V3 = std::array::from_fn(|i| dot(&row(i), &v3(normal)));
+    let down: V3 = std::array::from_fn(|i| -w[i]);
+    let d = (body_value(a, &down) + Dd::new(offset) + dot(&w, &v3(frame.translation))) / norm(&w);
+    let blur = Dd::new(BLUR * (reach(a) + reach(frame) + offset.abs() / norm(&w).hi));
+    if !(Dd::new(seen.lower) <= d + blur && d - blur <= Dd::new(seen.upper)) {
+        find("the bracket of a half space misses the definition", &format!("{r:?}\n{d:?}"));
+    }
+}
+
+fn fuzz_join(dice: &mut Dice) {
+    let scale = dice.decade(-6.0, 6.0);
+    let mut parts: [BodyText; 3] = std::array::from_fn(|_| random_body(dice, scale, 2.0 * scale));
+    let place = CURRENT.lock().unwrap().0.clone();
+    now_at(format!("{place}\njoin of the first two, and the third: {parts:?}"));
+    let mut ledger = Ledger::new();
+    if dice.chance(0.5) {
+        parts = parts.map(|part| rounded::<f32>(&part));
+        run_join::<f32>(&parts, dice, &mut ledger);
+    }
+    run_join::<f64>(&parts, dice, &mut ledger);
+}
+
+/// Against heights in double-double: the larger of the parts' along the normal, and along random directions.
+fn run_join<T: Real>(parts: &[BodyText; 3], dice: &mut Dice, ledger: &mut Ledger) {
+    let [a, b, other] = parts;
+    let points = parts.each_ref().map(|part| common::points::<T>(&part.shape));
+    let shapes = [0, 1, 2].map(|i| common::shape(&parts[i].shape, &points[i]));
+    let moved = |i: usize| {
+        let rotation = SMatrix::<T, 3, 3>::from_row_slice(&parts[i].rotation.map(T::of));
+        Rigid::new(&*shapes[i], rotation, Vector::from(parts[i].translation.map(T::of))).unwrap()
+    };
+    let join = Join::new(moved(0), moved(1));
+    let mut memory = Memory::new::<T, 3>(256, 512);
+    let options = Options { max_iterations: 300, ..Options::default() };
+    let placed = Body::at(&join, Vector::zeros());
+    let r = memory.solver::<T, 3>().depth(&placed, &common::body(other, &*shapes[2]), &options);
+    let seen = Seen::from(&r);
+    if let Some(text) = broken_promise(&seen, &options, 256, 512) {
+        find(&text, &format!("{r:?}"));
+    }
+    let height = |n: &V3| {
+        let back: V3 = std::array::from_fn(|i| -n[i]);
+        (body_value(a, n).max(body_value(b, n)) + body_value(other, &back)) / norm(n)
+    };
+    let blur = BLUR * parts.iter().map(reach).sum::<f64>();
+    let n = v3([r.normal.x, r.normal.y, r.normal.z].map(Real::to_f64));
+    if seen.upper < T::HUGE.to_f64() && !(height(&n) <= Dd::new(seen.upper + blur)) {
+        find("the normal does not prove the upper bound of a join", &format!("{r:?}\nproved {:e}", height(&n).hi));
+    }
+    ledger.add(seen.lower, seen.upper, &format!("{r:?}"));
+    for _ in 0..50 {
+        ledger.add(f64::NEG_INFINITY, height(&v3(dice.direction::<3>())).hi + blur, "a direction");
     }
 }
 

@@ -30,6 +30,8 @@ pub enum Outcome {
     Degenerate,
     /// A support or gauge function failed, or returned values that are not finite.
     SupportFailed,
+    /// Two half spaces overlap without end: no translation separates them. d is infinite, and both bounds are the largest finite number.
+    Unbounded,
 }
 
 /// How a query was answered: what it is decides (see [`Solver::solve`](crate::Solver::solve)).

@@ -22,6 +22,8 @@ use crate::support::{Failure, Support, Symmetry, one_by_one};
 use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
+pub(crate) mod half_space;
+
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
 /// A 2 x 2 matrix.
@@ -371,7 +373,8 @@ pub struct Depth<T, const N: usize = 3> {
 impl<T: Real> Solver<'_, T, 3> {
     /// Translational penetration depth of two bodies, or their distance, as a bracket with witness points.
     ///
-    /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact.
+    /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact. Against a
+    /// [half space](crate::support::HalfSpace) the answer is a closed form, and the solver is not used.
     /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
     pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
         self.depth_until(a, b, options, None)
@@ -385,6 +388,9 @@ impl<T: Real> Solver<'_, T, 3> {
         options: &Options<T, 3>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T> {
+        if let Some(depth) = unbounded(a, b, options) {
+            return depth;
+        }
         let mut pair = match Pair::new(a, b) {
             Ok(pair) => pair,
             Err(failure) => return Depth::failed(failure),
@@ -409,7 +415,23 @@ impl<T: Real> Solver<'_, T, 3> {
 impl<T: Real> Solver<'_, T, 2> {
     /// Translational penetration depth of two bodies in the plane, or their distance, as a bracket with witness points.
     ///
-    /// Everything is as in [space](Solver::<T, 3>::depth), with polygons for polyhedra.
+    /// Everything is as in [space](Solver::<T, 3>::depth), with polygons for polyhedra: discs are [`Sphere`](crate::support::Sphere)s, and
+    /// what else is generic over the dimension serves. For polygons of m and n vertices, m + n vertices and as many facets suffice.
+    ///
+    /// ```
+    /// use nalgebra::Matrix2;
+    /// use qdist::{Body, Options, Vector, Workspace, support::{BoxShape, Sphere}};
+    /// let door = BoxShape::new(Vector::from([1.0, 0.125])).unwrap();
+    /// let ball = Sphere::new(0.5).unwrap();
+    /// let (c, s) = (0.8, 0.6);
+    /// let a = Body::new(&door, Matrix2::new(c, -s, s, c), Vector::from([1.0, 2.0])).unwrap();
+    /// // Half a unit from the middle of the door's long side, which is 1/8 thick.
+    /// let b = Body::at(&ball, Vector::from([1.0 - 0.6 * 0.5, 2.0 + 0.8 * 0.5]));
+    /// let mut memory = Workspace::<f64, 2, 8, 8>::new();
+    /// let depth = memory.solver().depth(&a, &b, &Options::default());
+    /// assert!((depth.upper - 0.125).abs() < 1e-6 && depth.lower <= depth.upper);
+    /// assert!((depth.normal - Vector::from([-0.6, 0.8])).amax() < 1e-6);
+    /// ```
     pub fn depth(&mut self, a: &Body<'_, T, 2>, b: &Body<'_, T, 2>, options: &Options<T, 2>) -> Depth<T, 2> {
         self.depth_until(a, b, options, None)
     }
@@ -422,11 +444,26 @@ impl<T: Real> Solver<'_, T, 2> {
         options: &Options<T, 2>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T, 2> {
+        if let Some(depth) = unbounded(a, b, options) {
+            return depth;
+        }
         match Pair::new(a, b) {
             Ok(pair) => self.expand_pair(&pair, options, interrupt, pair.calls()),
             Err(failure) => Depth::failed(failure),
         }
     }
+}
+
+/// The answer of a body without end, which needs no solver.
+pub(crate) fn unbounded<T: Real, const N: usize>(
+    a: &Body<'_, T, N>,
+    b: &Body<'_, T, N>,
+    options: &Options<T, N>,
+) -> Option<Depth<T, N>> {
+    if let Some(half_space) = b.shape.unbounded() {
+        return Some(half_space.depth(b, a, false, options));
+    }
+    a.shape.unbounded().map(|half_space| half_space.depth(a, b, true, options))
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {

@@ -8,8 +8,8 @@
 //!
 //! of the origin in a compact convex set A, measured by a convex set Q, for controllers that have no heap and no
 //! time. Every answer is a **bracket** `lower <= d <= upper`, true in floating point, with the direction that proves `upper` and
-//! the points of A that prove `lower`, whatever stopped the run. Depth of two bodies in space is the special case A = difference of the bodies,
-//! Q = unit ball:
+//! the points of A that prove `lower`, whatever stopped the run. Depth of two bodies, in space or in the plane, is the special case
+//! A = difference of the bodies, Q = unit ball:
 //!
 //! ```
 //! use qdist::{Body, Options, Vector, Workspace, support::{BoxShape, Cylinder}};
@@ -140,6 +140,8 @@ pub use workspace::Workspace;
 pub const NOT_FINITE: i32 = i32::MIN;
 /// Failure code: nothing that was returned is wrong, but the numbers are so large that arithmetic with them overflows.
 pub const TOO_LARGE: i32 = i32::MIN + 3;
+/// Failure code: a set without end ([`HalfSpace`](support::HalfSpace)) was asked for a farthest point.
+pub const UNBOUNDED: i32 = i32::MIN + 4;
 /// Failure code: an internal set has no points.
 pub(crate) const EMPTY: i32 = i32::MIN + 1;
 

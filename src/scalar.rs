@@ -167,4 +167,11 @@ impl<T: Real> Accumulator<T> {
     pub fn value(&self) -> T {
         self.sum + self.error
     }
+
+    /// The value, and what its rounding leaves out.
+    pub fn parts(&self) -> (T, T) {
+        let mut whole = Accumulator::new(self.sum);
+        whole.add(self.error);
+        (whole.sum, whole.error)
+    }
 }

@@ -20,6 +20,7 @@ pub fn outcome_name(outcome: Outcome) -> &'static str {
         Outcome::Capacity => "capacity",
         Outcome::Iterations => "iterations",
         Outcome::Interrupted => "interrupted",
+        Outcome::Unbounded => "unbounded",
         Outcome::Degenerate => "degenerate",
         Outcome::SupportFailed => "support_failed",
     }

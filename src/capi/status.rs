@@ -82,6 +82,8 @@ pub const QDIST_ERROR_ALLOCATOR: qdist_status = 30;
 pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
 /// A callback uses the solver, pair or tracker that is calling it.
 pub const QDIST_ERROR_BUSY: qdist_status = 32;
+/// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
+pub const QDIST_ERROR_UNBOUNDED: qdist_status = 33;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -109,6 +111,8 @@ pub const QDIST_DEGENERATE: qdist_outcome = 8;
 pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;
 /// `interrupt` of the options said so.
 pub const QDIST_INTERRUPTED: qdist_outcome = 10;
+/// Two half spaces overlap without end: no translation separates them. d is infinite; both bounds are DBL_MAX (float: FLT_MAX).
+pub const QDIST_UNBOUNDED: qdist_outcome = 11;
 
 /// How was the query answered? What A and Q are decides it.
 pub type qdist_plan = i32;
@@ -173,6 +177,7 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_ALLOCATOR => c"allocator set or in use",
         QDIST_ERROR_INTERNAL => c"defect of the library",
         QDIST_ERROR_BUSY => c"solver in use by the caller of the callback",
+        QDIST_ERROR_UNBOUNDED => c"half space where it cannot serve",
         _ => c"unknown status",
     }
     .as_ptr()
@@ -193,6 +198,7 @@ pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char 
         QDIST_DEGENERATE => c"degenerate",
         QDIST_SUPPORT_FAILED => c"support failed",
         QDIST_INTERRUPTED => c"interrupted",
+        QDIST_UNBOUNDED => c"unbounded",
         _ => c"unknown outcome",
     }
     .as_ptr()
@@ -214,6 +220,11 @@ pub extern "C" fn qdist_plan_string(plan: qdist_plan) -> *const c_char {
 
 /// `Ok`, or the status that says what is wrong.
 pub(super) type Check<T = ()> = Result<T, qdist_status>;
+
+/// And back.
+pub(super) fn from_status(status: qdist_status) -> Check {
+    if status == QDIST_OK { Ok(()) } else { Err(status) }
+}
 
 /// A check as the C caller sees it.
 pub(super) fn status(check: Check) -> qdist_status {
@@ -238,6 +249,7 @@ pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
         Outcome::Degenerate => QDIST_DEGENERATE,
         Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
         Outcome::Interrupted => QDIST_INTERRUPTED,
+        Outcome::Unbounded => QDIST_UNBOUNDED,
     }
 }
 
@@ -254,7 +266,7 @@ pub(super) fn plan(plan: Plan) -> qdist_plan {
 
 pub(super) fn from_shape(error: ShapeError) -> qdist_status {
     match error {
-        ShapeError::Negative | ShapeError::Empty => QDIST_ERROR_ARGUMENT,
+        ShapeError::Negative | ShapeError::Empty | ShapeError::Direction => QDIST_ERROR_ARGUMENT,
         ShapeError::NonFinite => QDIST_ERROR_NONFINITE,
         ShapeError::NotOrthonormal => QDIST_ERROR_ROTATION,
     }

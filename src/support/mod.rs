@@ -22,13 +22,15 @@
 
 use core::fmt;
 
+pub use crate::depth::half_space::HalfSpace;
+use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
 
 mod combine;
 mod graph;
 mod hull;
 mod load;
-mod shapes;
+pub(crate) mod shapes;
 mod solids;
 
 pub(crate) use combine::total;
@@ -55,6 +57,7 @@ impl fmt::Display for Failure {
         match self.0 {
             crate::NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
             crate::TOO_LARGE => f.write_str("the numbers are so large that arithmetic with them overflows"),
+            crate::UNBOUNDED => f.write_str("a half space was asked for a farthest point"),
             code => write!(f, "a support or gauge function failed with code {code}"),
         }
     }
@@ -134,6 +137,13 @@ pub trait Support<T: Real, const N: usize> {
     /// For a set in R^3: exact rotational symmetry. Two bodies that turn about a common axis are measured in a plane.
     fn symmetry(&self) -> Symmetry {
         Symmetry::None
+    }
+
+    /// What answers in place of a support function, where the set has no end and so no farthest points. Of the sets of this crate only
+    /// [`HalfSpace`] has that, and no other set can: the trait is not to be had elsewhere.
+    #[doc(hidden)]
+    fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
+        None
     }
 
     /// Does the core not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? `true` is a proof,

@@ -28,6 +28,8 @@ pub enum ShapeError {
     Empty,
     /// A rotation matrix is farther than 1e-3 from orthonormal: use [`Linear`](super::Linear).
     NotOrthonormal,
+    /// A direction is zero.
+    Direction,
 }
 
 impl fmt::Display for ShapeError {
@@ -37,6 +39,7 @@ impl fmt::Display for ShapeError {
             Self::NonFinite => "a number is NaN, infinite or too large",
             Self::Empty => "there are no points, or none but the origin",
             Self::NotOrthonormal => "the matrix is farther than 1e-3 from orthonormal",
+            Self::Direction => "a direction is zero",
         })
     }
 }

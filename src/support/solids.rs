@@ -259,6 +259,6 @@ mod tests {
     fn constructors_refuse() {
         assert_eq!(Cylinder::new(-1.0, 1.0), Err(ShapeError::Negative));
         assert_eq!(Cone::new(1.0, f64::NAN), Err(ShapeError::NonFinite));
-        assert_eq!(Capsule::new(f32::INFINITY, 1.0), Err(ShapeError::NonFinite));
+        assert_eq!(Capsule::<_, 3>::new(f32::INFINITY, 1.0), Err(ShapeError::NonFinite));
     }
 }

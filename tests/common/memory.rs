@@ -118,5 +118,6 @@ pub fn broken_promise<T: Real, const N: usize>(
             Outcome::Precision | Outcome::Capacity => claim(s.upper >= 0.0, "apart, but not Separated"),
             Outcome::Degenerate => claim(s.lower <= 0.0, "Degenerate, but lower > 0"),
             Outcome::SupportFailed => None,
+            Outcome::Unbounded => claim(s.lower >= T::HUGE.to_f64(), "Unbounded, but a lower bound that is not"),
         })
 }

@@ -1,7 +1,7 @@
 //! The convex hull of two sets.
 
-use super::{above, total};
 use super::linear::measured_extent;
+use super::{above, total};
 use crate::scalar::{Real, Vector, finite};
 use crate::support::shapes::{in_range, largest, length, rescaled, unit};
 use crate::support::{Failure, Support, Symmetry};

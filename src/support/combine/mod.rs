@@ -13,6 +13,7 @@ use nalgebra::SMatrix;
 
 use super::shapes::above;
 use super::{Failure, Support, Symmetry};
+use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
 
 #[cfg(test)]
@@ -103,6 +104,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     }
     fn symmetry(&self) -> Symmetry {
         (**self).symmetry()
+    }
+    fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
+        (**self).unbounded()
     }
     fn mirrored(&self, signs: u8) -> bool {
         (**self).mirrored(signs)
