@@ -69,12 +69,13 @@ demo-mesh: lib-mesh
 define c-tests
 	@mkdir -p $(out)/$(1)
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/smoke.c $(3) -lm -o $(out)/$(1)/smoke
+	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bodies.c $(3) -lm -o $(out)/$(1)/bodies
 	@$(CC) $(CFLAGS_TEST) $(2) ffi-tests/bad_arguments.c $(3) -lm -o $(out)/$(1)/bad_arguments
 	@$(CC) $(CFLAGS_TEST) $(2) -DCARGO_VERSION='"$(version)"' ffi-tests/abi.c $(3) -lm -o $(out)/$(1)/abi
 	@$(CXX) $(CXXFLAGS_TEST) $(2) ffi-tests/smoke_cpp.cpp $(3) -lm -o $(out)/$(1)/smoke_cpp
-	@for test in grasp callbacks environment sweep; do \
+	@for test in bodies grasp callbacks environment sweep; do \
 	    $(CC) $(CFLAGS_TEST) $(2) ffi-tests/$$test.c $(3) -lm -o $(out)/$(1)/$$test || exit 1; done
-	@for test in smoke bad_arguments abi grasp callbacks environment sweep smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
+	@for test in smoke bodies bad_arguments abi grasp callbacks environment sweep smoke_cpp; do $(4) $(out)/$(1)/$$test || exit 1; done
 endef
 
 # $(call mesh-tests,directory,extra flags,library)
@@ -99,7 +100,7 @@ test-c: lib lib-std lib-mesh
 	$(call mesh-tests,sanitized,-fsanitize=address$(comma)undefined -fno-sanitize-recover=all,$(lib_std))
 	@if command -v valgrind >/dev/null; then \
 	    echo "C and C++ tests under valgrind"; \
-	    for test in smoke bad_arguments abi grasp callbacks smoke_cpp mesh mesh_cpp; do \
+	    for test in smoke bodies bad_arguments abi grasp callbacks smoke_cpp mesh mesh_cpp; do \
 	        valgrind --quiet --error-exitcode=1 --leak-check=full $(out)/plain/$$test || exit 1; \
 	    done; \
 	else echo "SKIPPED: valgrind is not there"; fi

@@ -216,6 +216,9 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // A callback uses the solver, pair or tracker that is calling it.
 #define QDIST_ERROR_BUSY 32
 
+// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
+#define QDIST_ERROR_UNBOUNDED 33
+
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
 
@@ -249,6 +252,9 @@ typedef int32_t (*qdist_interrupt)(void *user);
 
 // `interrupt` of the options said so.
 #define QDIST_INTERRUPTED 10
+
+// Two half spaces overlap without end: no translation separates them. d is infinite; both bounds are DBL_MAX (float: FLT_MAX).
+#define QDIST_UNBOUNDED 11
 
 // Expansion of one polytope, best first.
 #define QDIST_PLAN_EXPANSION 0
@@ -306,6 +312,9 @@ uint32_t qdist_version(void);
 //
 // user: the pointer from the set or gauge.
 typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
+
+// What answers for a body without end. Not for functions of your own.
+typedef qdist_status (*qdist_unbounded)(const void *a, const void *b, const void *options, void *result);
 
 /* =========================================================== SOLVERS ===========================================================
  *
@@ -416,6 +425,8 @@ typedef struct {
     // Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
     // about one axis a plane problem.
     uint32_t symmetry;
+    // NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
+    qdist_unbounded unbounded;
 } qdist_body_f64;
 
 // Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
@@ -563,9 +574,52 @@ int32_t qdist_hull_support_f64(void *user, const double *direction, double *poin
 // The same, more accurate where all points are far from the origin compared with their spread.
 int32_t qdist_hull_far_support_f64(void *user, const double *direction, double *point);
 
+/* ===================================================== HULLS OF TWO BODIES =====================================================
+ *
+ * The convex hull of two bodies, each in its pose: a tapered capsule is that of two spheres, a frustum of two cylinders of half height
+ * 0, a swept shape of one shape in two poses. (Bullet: btConvexHullShape of both, or btMultiSphereShape; geometry: a join.) The
+ * smaller of the two radii stays a ball, and is exact. Joins may be joined again. Where both bodies turn about the z axis of the join's frame (identity rotations and
+ * translations along z), so does the join, and two bodies on one axis are a plane problem. */
+
+// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
+// has changed must be made anew.
+typedef struct {
+    const qdist_body_f64 *a;
+    const qdist_body_f64 *b;
+} qdist_join_f64;
+
+// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+qdist_status qdist_body_join_f64(qdist_body_f64 *body, const qdist_join_f64 *join);
+
+// Support function of the core of a hull of two bodies: without the smaller of the two radii.
+int32_t qdist_join_support_f64(void *user, const double *direction, double *point);
+
+// The same, where a part has shortcuts.
+int32_t qdist_join_exhaustive_f64(void *user, const double *direction, double *point);
+
+/* ========================================================= HALF SPACES =========================================================
+ *
+ * The ground, a wall, a plane of contact: a body of qdist_depth3 with no end. Its depth against any other body is the height of
+ * that body's lowest point: one call of its support function, no solver memory, and a bracket of a few roundoffs. (Bullet:
+ * btStaticPlaneShape, with the same normal and offset; FCL: fcl::Halfspace.) In C it is a body and nothing else: no set of a query,
+ * no part of a hull of two bodies (QDIST_ERROR_UNBOUNDED).
+ *
+ * Two half spaces overlap without end (QDIST_UNBOUNDED), unless their normals are exactly opposite, as those of a floor and a ceiling: then
+ * the depth is that between the two planes. Where a pose is turned, and rounding does not tell whether the normals are
+ * opposite, upper is DBL_MAX (float: FLT_MAX), and lower holds in both cases. */
+
+// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.
+typedef struct {
+    double normal[3];
+    double offset;
+} qdist_half_space_f64;
+
+// Makes a body of a half space, in the identity pose. Numbers are read at every query.
+qdist_status qdist_body_half_space_f64(qdist_body_f64 *body, const qdist_half_space_f64 *shape);
+
 /* ====================================================== SETS MADE OF SETS ======================================================
  *
- * Sum, difference and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
+ * Sum, difference, convex hull of the union, and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
  * set that is made of them. */
 
 // Two sets of the same dimension.
@@ -596,6 +650,11 @@ qdist_status qdist_set_sum_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
 // Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
 qdist_status qdist_set_difference_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
 
+// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
+// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+qdist_status qdist_set_join_f64(qdist_set_f64 *set,
+                                const qdist_pair_f64 *pair);
+
 // Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
 qdist_status qdist_set_linear_f64(qdist_set_f64 *set, const qdist_linear_f64 *map);
 
@@ -616,6 +675,12 @@ int32_t qdist_linear_support_f64(void *user, const double *direction, double *po
 
 // The same, where the set has shortcuts.
 int32_t qdist_linear_exhaustive_f64(void *user, const double *direction, double *point);
+
+// Support function of a join.
+int32_t qdist_set_join_support_f64(void *user, const double *direction, double *point);
+
+// The same, where a part has shortcuts.
+int32_t qdist_set_join_exhaustive_f64(void *user, const double *direction, double *point);
 
 /* ========================================================== GAUGE SETS ==========================================================
  *
@@ -787,7 +852,8 @@ typedef struct {
     // minus their distance.
     double lower;
     double upper;
-    // Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A.
+    // Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
+    // number is 0.)
     double normal[3];
     // Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     // after B has been moved, or the nearest points of separated bodies.
@@ -899,6 +965,121 @@ qdist_status qdist_solve6_f64(qdist_solver *solver,
                               const qdist_gauge_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
+
+/* ===================================================== BODIES IN THE PLANE =====================================================
+ *
+ * All that qdist_depth3 does in space, in the plane: discs, boxes, ellipses, capsules, polygons, half planes, hulls of two bodies, and support
+ * functions of your own. The solver is one of dimension 2; for polygons of m and n vertices, m + n vertices and as many facets
+ * suffice. Results are those of space, with 0 as the third numbers.
+ *
+ * A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
+ * way: write { c, -s, s, c } for the cosine and sine that you have. */
+
+// A set in the plane with a pose: x -> rotation * x + translation.
+typedef struct {
+    // The set, in the body's frame.
+    qdist_set_f64 set;
+    // Row-major: { c, -s, s, c } for cosine c and sine s. A rotation to within 1e-4; used as it is given.
+    double rotation[4];
+    // Position of the body's frame in the world.
+    double translation[2];
+    // As in qdist_body_f64.
+    double center[2];
+    double rolling_radius;
+    double spread;
+    // NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
+    qdist_unbounded unbounded;
+} qdist_body2_f64;
+
+// All points within `radius` of the origin.
+typedef struct {
+    double radius;
+} qdist_disc_f64;
+
+// |x| <= half[0], |y| <= half[1].
+typedef struct {
+    double half[2];
+} qdist_box2_f64;
+
+// The ellipse with these semi axes along x and y.
+typedef struct {
+    double semi_axes[2];
+} qdist_ellipse_f64;
+
+// All points within `radius` of the segment from (0, -half_height) to (0, half_height).
+typedef struct {
+    double radius;
+    double half_height;
+} qdist_capsule2_f64;
+
+// The convex hull of two bodies, as qdist_join_f64.
+typedef struct {
+    const qdist_body2_f64 *a;
+    const qdist_body2_f64 *b;
+} qdist_join2_f64;
+
+// The points x with normal . x <= offset. The normal points out of the half plane; it need not be of unit length, but not 0.
+typedef struct {
+    double normal[2];
+    double offset;
+} qdist_half_plane_f64;
+
+// Makes a body of a disc, in the identity pose, like all that follow.
+qdist_status qdist_body2_disc_f64(qdist_body2_f64 *body, const qdist_disc_f64 *shape);
+
+// Makes a body of a box.
+qdist_status qdist_body2_box_f64(qdist_body2_f64 *body, const qdist_box2_f64 *shape);
+
+// Makes a body of an ellipse.
+qdist_status qdist_body2_ellipse_f64(qdist_body2_f64 *body, const qdist_ellipse_f64 *shape);
+
+// Makes a body of a capsule.
+qdist_status qdist_body2_capsule_f64(qdist_body2_f64 *body, const qdist_capsule2_f64 *shape);
+
+// Makes a body of the convex hull of a list of points of dimension 2, in any order: a convex polygon. Reads all of them.
+qdist_status qdist_body2_points_f64(qdist_body2_f64 *body,
+                                    const qdist_points_f64 *shape);
+
+// Makes a body of any set of dimension 2. Checks and copies the set; what it points to must outlive the body.
+qdist_status qdist_body2_set_f64(qdist_body2_f64 *body, const qdist_set_f64 *set);
+
+// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+qdist_status qdist_body2_join_f64(qdist_body2_f64 *body, const qdist_join2_f64 *join);
+
+// Makes a body of a half plane, as qdist_body_half_space in space. Numbers are read at every query.
+qdist_status qdist_body2_half_plane_f64(qdist_body2_f64 *body, const qdist_half_plane_f64 *shape);
+
+// Support function of a disc's core.
+int32_t qdist_disc_support_f64(void *user, const double *direction, double *point);
+
+// Support function of a box.
+int32_t qdist_box2_support_f64(void *user, const double *direction, double *point);
+
+// Support function of an ellipse's core.
+int32_t qdist_ellipse_support_f64(void *user, const double *direction, double *point);
+
+// Support function of a capsule's core, a segment.
+int32_t qdist_capsule2_support_f64(void *user, const double *direction, double *point);
+
+// Support function of a list of points of dimension 2.
+int32_t qdist_points2_support_f64(void *user, const double *direction, double *point);
+
+// The same, more accurate where all points are far from the origin compared with their spread.
+int32_t qdist_points2_far_support_f64(void *user, const double *direction, double *point);
+
+// Support function of the core of a hull of two bodies: without the smaller of the two radii.
+int32_t qdist_join2_support_f64(void *user, const double *direction, double *point);
+
+// The same, where a part has shortcuts.
+int32_t qdist_join2_exhaustive_f64(void *user, const double *direction, double *point);
+
+// Penetration depth or distance of two bodies in the plane, with witness points. A and B may be the same body. The solver is
+// one of dimension 2. Swapping A and B turns the normal and swaps the points.
+qdist_status qdist_depth2_f64(qdist_solver *solver,
+                              const qdist_body2_f64 *a,
+                              const qdist_body2_f64 *b,
+                              const qdist_options_f64 *options,
+                              qdist_depth_f64 *result);
 
 /* ========================================================== FLAT SETS ==========================================================
  *
@@ -1087,6 +1268,7 @@ typedef struct {
     float rolling_radius;
     float spread;
     uint32_t symmetry;
+    qdist_unbounded unbounded;
 } qdist_body_f32;
 
 qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);
@@ -1181,6 +1363,28 @@ int32_t qdist_hull_support_f32(void *user, const float *direction, float *point)
 
 int32_t qdist_hull_far_support_f32(void *user, const float *direction, float *point);
 
+/* ================================================== HULLS OF TWO BODIES, FLOAT ================================================== */
+
+typedef struct {
+    const qdist_body_f32 *a;
+    const qdist_body_f32 *b;
+} qdist_join_f32;
+
+qdist_status qdist_body_join_f32(qdist_body_f32 *body, const qdist_join_f32 *join);
+
+int32_t qdist_join_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_join_exhaustive_f32(void *user, const float *direction, float *point);
+
+/* ====================================================== HALF SPACES, FLOAT ====================================================== */
+
+typedef struct {
+    float normal[3];
+    float offset;
+} qdist_half_space_f32;
+
+qdist_status qdist_body_half_space_f32(qdist_body_f32 *body, const qdist_half_space_f32 *shape);
+
 /* =================================================== SETS MADE OF SETS, FLOAT =================================================== */
 
 typedef struct {
@@ -1201,6 +1405,8 @@ qdist_status qdist_set_sum_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
 
 qdist_status qdist_set_difference_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
 
+qdist_status qdist_set_join_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
+
 qdist_status qdist_set_linear_f32(qdist_set_f32 *set, const qdist_linear_f32 *map);
 
 int32_t qdist_sum_support_f32(void *user, const float *direction, float *point);
@@ -1214,6 +1420,10 @@ int32_t qdist_difference_exhaustive_f32(void *user, const float *direction, floa
 int32_t qdist_linear_support_f32(void *user, const float *direction, float *point);
 
 int32_t qdist_linear_exhaustive_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_set_join_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_set_join_exhaustive_f32(void *user, const float *direction, float *point);
 
 /* ====================================================== GAUGE SETS, FLOAT ====================================================== */
 
@@ -1371,6 +1581,83 @@ qdist_status qdist_solve6_f32(qdist_solver *solver,
                               const qdist_gauge_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
+
+/* ================================================== BODIES IN THE PLANE, FLOAT ================================================== */
+
+typedef struct {
+    qdist_set_f32 set;
+    float rotation[4];
+    float translation[2];
+    float center[2];
+    float rolling_radius;
+    float spread;
+    qdist_unbounded unbounded;
+} qdist_body2_f32;
+
+typedef struct {
+    float radius;
+} qdist_disc_f32;
+
+typedef struct {
+    float half[2];
+} qdist_box2_f32;
+
+typedef struct {
+    float semi_axes[2];
+} qdist_ellipse_f32;
+
+typedef struct {
+    float radius;
+    float half_height;
+} qdist_capsule2_f32;
+
+typedef struct {
+    const qdist_body2_f32 *a;
+    const qdist_body2_f32 *b;
+} qdist_join2_f32;
+
+typedef struct {
+    float normal[2];
+    float offset;
+} qdist_half_plane_f32;
+
+qdist_status qdist_body2_disc_f32(qdist_body2_f32 *body, const qdist_disc_f32 *shape);
+
+qdist_status qdist_body2_box_f32(qdist_body2_f32 *body, const qdist_box2_f32 *shape);
+
+qdist_status qdist_body2_ellipse_f32(qdist_body2_f32 *body, const qdist_ellipse_f32 *shape);
+
+qdist_status qdist_body2_capsule_f32(qdist_body2_f32 *body, const qdist_capsule2_f32 *shape);
+
+qdist_status qdist_body2_points_f32(qdist_body2_f32 *body, const qdist_points_f32 *shape);
+
+qdist_status qdist_body2_set_f32(qdist_body2_f32 *body, const qdist_set_f32 *set);
+
+qdist_status qdist_body2_join_f32(qdist_body2_f32 *body, const qdist_join2_f32 *join);
+
+qdist_status qdist_body2_half_plane_f32(qdist_body2_f32 *body, const qdist_half_plane_f32 *shape);
+
+int32_t qdist_disc_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_box2_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_ellipse_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_capsule2_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_points2_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_points2_far_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_join2_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_join2_exhaustive_f32(void *user, const float *direction, float *point);
+
+qdist_status qdist_depth2_f32(qdist_solver *solver,
+                              const qdist_body2_f32 *a,
+                              const qdist_body2_f32 *b,
+                              const qdist_options_f32 *options,
+                              qdist_depth_f32 *result);
 
 /* ======================================================= FLAT SETS, FLOAT ======================================================= */
 

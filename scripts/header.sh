@@ -38,7 +38,7 @@ header() {
 }
 
 { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-header src/capi/prelude.h "status version symmetry" "solver sets shapes points combine gauges query span warm" |
+header src/capi/prelude.h "status version symmetry" "solver sets shapes points join half_space combine gauges query plane span warm" |
     cat -s >"$out"
 header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
 header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"

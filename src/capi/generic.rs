@@ -241,10 +241,10 @@ pub fn farthest<'a, T: Real>(points: &'a [T], dimension: usize, u: &[T]) -> Opti
     best
 }
 
-/// Coordinates as points in space.
+/// Coordinates as points.
 #[inline(always)]
-pub fn in_space<T>(list: &[T]) -> &[[T; 3]] {
-    list.as_chunks::<3>().0
+pub fn as_points<T, const N: usize>(list: &[T]) -> &[[T; N]] {
+    list.as_chunks::<N>().0
 }
 
 // ---------------------------------------------------------------------------------------------------------- callbacks

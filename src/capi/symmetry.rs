@@ -1,5 +1,6 @@
 //! SYMMETRY
 
+use super::status::qdist_status;
 use core::ffi::c_void;
 
 /// Of a body: none that is known.
@@ -15,3 +16,13 @@ pub const QDIST_SYMMETRY_FULL: u32 = 2;
 ///
 /// user: the pointer from the set or gauge.
 pub type qdist_mirrored = Option<unsafe extern "C" fn(user: *mut c_void, signs: u32) -> i32>;
+
+/// What answers for a body without end. Not for functions of your own.
+pub type qdist_unbounded = Option<
+    unsafe extern "C" fn(
+        a: *const c_void,
+        b: *const c_void,
+        options: *const c_void,
+        result: *mut c_void,
+    ) -> qdist_status,
+>;

@@ -1,7 +1,7 @@
 // generated from f64/combine.rs by `make header`; do not edit
 //! SETS MADE OF SETS
 //!
-//! Sum, difference and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
+//! Sum, difference, convex hull of the union, and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
 //! set that is made of them.
 
 use super::super::generic::{
@@ -56,6 +56,41 @@ pub unsafe extern "C" fn qdist_set_difference_f32(
 ) -> qdist_status {
     // SAFETY: what the header asks of the caller.
     status(unsafe { fill_pair(set, pair, qdist_difference_support_f32, qdist_difference_exhaustive_f32) })
+}
+
+/// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
+/// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_join_f32(set: *mut qdist_set_f32, pair: *const qdist_pair_f32) -> qdist_status {
+    let fill = || {
+        aligned(set)?;
+        // SAFETY: what the header asks of the caller.
+        let (a, b, n) = unsafe { parts(pair) }?;
+        if !(a.extent > 0.0 && b.extent > 0.0) {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let radius = a.radius.at_most(b.radius);
+        let (beyond_a, beyond_b) = (a.radius - radius, b.radius - radius);
+        let (beyond, extent) = (beyond_a + beyond_b, (a.extent + beyond_a).at_least(b.extent + beyond_b) * 1.000001);
+        // As derived for `support::Join`.
+        let put_on = if beyond > 0.0 { f32::count(n / 2 + 5) * beyond + extent } else { 0.0 };
+        let rounding = (f32::count(n + 2) * (a.extent + b.extent + beyond) + put_on) * f32::ROUNDOFF;
+        let error = a.stated_error(n).at_least(b.stated_error(n));
+        let made = qdist_set_f32 {
+            support: Some(qdist_set_join_support_f32),
+            exhaustive: a.exhaustive.or(b.exhaustive).map(|_| qdist_set_join_exhaustive_f32 as SupportFn<f32>),
+            mirrored: a.mirrored.and(b.mirrored).and(Some(pair_mirrored)),
+            user: pair.cast_mut().cast(),
+            radius,
+            extent,
+            error: ((error + rounding) * 1.000001).at_least(tiny()),
+            dimension: n as u32,
+        };
+        // SAFETY: checked.
+        unsafe { put(set, made) };
+        Ok(())
+    };
+    status(fill())
 }
 
 /// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
@@ -149,6 +184,24 @@ pub unsafe extern "C" fn qdist_linear_exhaustive_f32(user: *mut c_void, directio
     status(unsafe { ask_linear(user, direction, point, true) })
 }
 
+/// Support function of a join.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_join_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_join(user, direction, point, false) })
+}
+
+/// The same, where a part has shortcuts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_set_join_exhaustive_f32(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { ask_join(user, direction, point, true) })
+}
+
 impl qdist_linear_f32 {
     /// # Safety
     /// If not NULL and aligned, `matrix` is valid for reads of all entries.
@@ -173,6 +226,19 @@ unsafe fn part<'a>(set: *const qdist_set_f32, n: usize) -> Check<&'a qdist_set_f
     if set.dimension != 0 && set.dimension as usize != n { Err(QDIST_ERROR_DIMENSION) } else { Ok(set) }
 }
 
+/// Both sets of a pair, and their dimension.
+///
+/// # Safety
+/// Pointers that are neither NULL nor misaligned are valid for reads.
+unsafe fn parts<'a>(pair: *const qdist_pair_f32) -> Check<(&'a qdist_set_f32, &'a qdist_set_f32, usize)> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let pair = shared(pair)?;
+        let n = dimension(pair.dimension)?;
+        Ok((part(pair.a, n)?, part(pair.b, n)?, n))
+    }
+}
+
 fn norm(v: &[f32]) -> f32 {
     dot(v, v).root() * 1.000001
 }
@@ -187,11 +253,7 @@ unsafe fn fill_pair(
 ) -> Check {
     aligned(set)?;
     // SAFETY: the caller's promise.
-    let (a, b, n) = unsafe {
-        let pair = shared(pair)?;
-        let n = dimension(pair.dimension)?;
-        (part(pair.a, n)?, part(pair.b, n)?, n)
-    };
+    let (a, b, n) = unsafe { parts(pair) }?;
     let known = a.extent > 0.0 && b.extent > 0.0;
     let extent = if known { (a.extent + b.extent) * 1.000001 } else { 0.0 };
     let made = qdist_set_f32 {
@@ -263,6 +325,47 @@ unsafe fn ask_pair(user: *mut c_void, direction: *const f32, point: *mut f32, si
             point.add(i).write(x + sign * y);
         }
     }
+    Ok(())
+}
+
+/// The farther of the points of `a` and `b`, the larger radius' excess put on.
+///
+/// # Safety
+/// Those of a support function.
+unsafe fn ask_join(user: *mut c_void, direction: *const f32, point: *mut f32, exhaustive: bool) -> Check {
+    // SAFETY: what the header asks of the caller.
+    let (a, b, u, mut x, mut y) = unsafe {
+        let pair = shared(user.cast::<qdist_pair_f32>().cast_const())?;
+        let u = array(direction, Some(dimension(pair.dimension)?))?;
+        room::<1>(point)?;
+        let (a, b) = (shared(pair.a)?, shared(pair.b)?);
+        (a, b, u, ask(a, u, exhaustive)?, ask(b, u, exhaustive)?)
+    };
+    let (mut store, mut other) = ([0.0; MAX_DIMENSION], [0.0; MAX_DIMENSION]);
+    let w = in_range(u, &mut store);
+    let excess = a.radius - b.radius;
+    if excess != 0.0 {
+        let larger = if excess > 0.0 { &mut x } else { &mut y };
+        let scale = excess.abs() / dot(w, w).root();
+        for (x, &w) in larger.iter_mut().zip(w) {
+            *x += scale * w;
+        }
+    }
+    let mut between = x;
+    for (x, y) in between.iter_mut().zip(&y) {
+        *x -= y;
+    }
+    let between = first(&between, u.len())?;
+    let farther = if between.iter().any(|x| !x.finite()) {
+        // What a part said must not get lost behind what the other one said.
+        between
+    } else if dot(w, in_range(between, &mut other)) >= 0.0 {
+        first(&x, u.len())?
+    } else {
+        first(&y, u.len())?
+    };
+    // SAFETY: `farther` and the caller's room have as many numbers as `u`.
+    unsafe { farther.as_ptr().copy_to(point, farther.len()) };
     Ok(())
 }
 

@@ -6,7 +6,7 @@
 //! coordinates are read and checked: make it anew when they change.
 
 use super::super::generic::{
-    MAX_DIMENSION, aligned, array, coordinates, dimension, farthest, gaps, in_range, in_space, put, reach, shared, tiny,
+    MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, gaps, in_range, put, reach, shared, tiny,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn qdist_hull_prepare_f32(
             graph.write_bytes(0, graph_capacity as usize);
             core::slice::from_raw_parts_mut(graph, graph_capacity as usize)
         };
-        solver.prepare_hull(in_space(coordinates), words).map_err(from_graph)?;
+        solver.prepare_hull(as_points(coordinates), words).map_err(from_graph)?;
         // SAFETY: checked.
         unsafe { put(hull, qdist_hull_f32 { points: list, graph, graph_len: graph_capacity }) };
         Ok(())
@@ -163,7 +163,7 @@ pub unsafe extern "C" fn qdist_points_support_f32(user: *mut c_void, direction: 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_points3_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { scan::<false>(user, direction, point) })
+    status(unsafe { scan::<false, 3>(user, direction, point) })
 }
 
 /// The same, more accurate where all points are far from the origin compared with their spread.
@@ -174,7 +174,7 @@ pub unsafe extern "C" fn qdist_points3_far_support_f32(
     point: *mut f32,
 ) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { scan::<true>(user, direction, point) })
+    status(unsafe { scan::<true, 3>(user, direction, point) })
 }
 
 /// Support function of a prepared hull.
@@ -201,27 +201,27 @@ impl qdist_points_f32 {
         unsafe { array(self.points, length) }
     }
 
-    /// The points in space.
+    /// The points, of dimension `N`.
     ///
     /// # Safety
     /// As for [`coordinates`](Self::coordinates).
     #[inline(always)]
-    unsafe fn in_space<'a>(&self) -> Check<&'a [[f32; 3]]> {
-        if self.dimension != 3 {
+    unsafe fn points<'a, const N: usize>(&self) -> Check<&'a [[f32; N]]> {
+        if self.dimension as usize != N {
             return Err(QDIST_ERROR_DIMENSION);
         }
         // SAFETY: the caller's promise.
-        Ok(in_space(unsafe { self.coordinates() }?))
+        Ok(as_points(unsafe { self.coordinates() }?))
     }
 
-    /// The points in space, to be searched.
+    /// The points, to be searched.
     ///
     /// # Safety
     /// As for [`coordinates`](Self::coordinates).
     #[inline(always)]
-    unsafe fn list<'a>(&self) -> Check<List<'a, f32, 3>> {
+    unsafe fn list<'a, const N: usize>(&self) -> Check<List<'a, f32, N>> {
         // SAFETY: the caller's promise.
-        List::new(unsafe { self.in_space() }?).ok_or(QDIST_ERROR_ARGUMENT)
+        List::new(unsafe { self.points() }?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
@@ -235,21 +235,23 @@ impl qdist_hull_f32 {
     }
 }
 
-/// Fills a body with points; of each pair of functions the first is for points around the origin, the second for points
-/// far from it.
+/// A set, its center and its spread about that.
+/// cbindgen:ignore
+type Placed<const N: usize> = (qdist_set_f32, Option<([f32; N], f32)>);
+
+/// A set of points, and where they lie when that is far from the origin; of each pair of functions the first is for points around
+/// the origin, the second for points far from it.
 ///
 /// # Safety
-/// `user` is what the functions expect; if not NULL and aligned, `body` is valid for writes and the points for reads.
-unsafe fn fill(
-    body: *mut qdist_body_f32,
+/// `user` is what the functions expect; if not NULL and aligned, the points are valid for reads.
+pub(super) unsafe fn set_of<const N: usize>(
     points: &qdist_points_f32,
     user: *const c_void,
     supports: [qdist_support_f32; 2],
     exhaustive: [qdist_support_f32; 2],
-) -> Check {
-    aligned(body)?;
+) -> Check<Placed<N>> {
     // SAFETY: the caller's promise.
-    let list = unsafe { points.in_space() }?;
+    let list = unsafe { points.points::<N>() }?;
     let all = Points::new(list).map_err(super::super::status::from_shape)?;
     let [near, far] = supports;
     let [exhaustive_near, exhaustive_far] = exhaustive;
@@ -262,12 +264,28 @@ unsafe fn fill(
         radius: 0.0,
         extent: all.extent().at_least(tiny()),
         error: all.error().at_least(tiny()),
-        dimension: 3,
+        dimension: N as u32,
     };
+    Ok((set, center.map(|(center, spread)| (center.into(), spread.at_least(tiny())))))
+}
+
+/// Fills a body with points.
+///
+/// # Safety
+/// As for [`set_of`]; if not NULL and aligned, `body` is valid for writes.
+unsafe fn fill(
+    body: *mut qdist_body_f32,
+    points: &qdist_points_f32,
+    user: *const c_void,
+    supports: [qdist_support_f32; 2],
+    exhaustive: [qdist_support_f32; 2],
+) -> Check {
+    aligned(body)?;
+    // SAFETY: the caller's promise.
+    let (set, center) = unsafe { set_of::<3>(points, user, supports, exhaustive) }?;
     let mut made = qdist_body_f32::at_origin(set);
     if let Some((center, spread)) = center {
-        made.center = center.into();
-        made.spread = spread.at_least(tiny());
+        (made.center, made.spread) = (center, spread);
     }
     // SAFETY: checked.
     unsafe { put(body, made) };
@@ -277,10 +295,14 @@ unsafe fn fill(
 /// # Safety
 /// Those of a support function.
 #[inline(always)]
-unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+pub(super) unsafe fn scan<const FAR: bool, const N: usize>(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> Check {
     // SAFETY: the caller's promise.
     let (list, u, room) = unsafe {
-        let (points, u, room) = arguments::<qdist_points_f32>(user, direction, point)?;
+        let (points, u, room) = arguments::<qdist_points_f32, N>(user, direction, point)?;
         (points.list()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
@@ -294,7 +316,7 @@ unsafe fn scan<const FAR: bool>(user: *mut c_void, direction: *const f32, point:
 unsafe fn climb<const FAR: bool>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
     // SAFETY: the caller's promise.
     let (list, graph, u, room) = unsafe {
-        let (hull, u, room) = arguments::<qdist_hull_f32>(user, direction, point)?;
+        let (hull, u, room) = arguments::<qdist_hull_f32, 3>(user, direction, point)?;
         (hull.points.list()?, hull.graph()?, u, room)
     };
     // SAFETY: `arguments` has checked it.

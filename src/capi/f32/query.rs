@@ -27,7 +27,7 @@ use super::super::generic::{
 };
 use super::super::handle::{self, Opened, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, outcome, overflow, plan, qdist_interrupt,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, overflow, plan, qdist_interrupt,
     qdist_outcome, qdist_plan, qdist_status, status,
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f32};
@@ -83,7 +83,8 @@ pub struct qdist_depth_f32 {
     /// minus their distance.
     pub lower: f32,
     pub upper: f32,
-    /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A.
+    /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
+    /// number is 0.)
     pub normal: [f32; 3],
     /// Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     /// after B has been moved, or the nearest points of separated bodies.
@@ -198,6 +199,11 @@ pub unsafe extern "C" fn qdist_depth3_f32(
             known_size((&raw const (*result).struct_size).read(), size_of::<qdist_depth_f32>())?;
             (solver, a, b)
         };
+        if let Some(answer) = a.unbounded.or(b.unbounded) {
+            let (a, b): (*const qdist_body_f32, *const qdist_body_f32) = (a, b);
+            // SAFETY: a function of this library for these arguments, which are checked.
+            return from_status(unsafe { answer(a.cast(), b.cast(), options.cast(), result.cast()) });
+        }
         // SAFETY: what the header asks of the caller.
         let (a, b, options) = unsafe { (a.checked()?, b.checked()?, convert::<3>(options)) };
         // Taken by reference out of their `Result`s: to move a large struct that was just written takes long.
@@ -316,19 +322,27 @@ pub(super) unsafe fn convert<const N: usize>(options: *const qdist_options_f32) 
     Ok((Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess }, deadline))
 }
 
-fn conclude(outcome: Outcome) -> Check {
+pub(super) fn conclude(outcome: Outcome) -> Check {
     if outcome == Outcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
 }
 
-fn from_depth(depth: &Depth<f32>) -> qdist_depth_f32 {
+/// The result for C; the third numbers of vectors in the plane are 0.
+pub(super) fn from_depth<const N: usize>(depth: &Depth<f32, N>) -> qdist_depth_f32 {
+    let vector = |v: &Vector<f32, N>| {
+        let mut all = [0.0; 3];
+        for (to, &x) in all.iter_mut().zip(&one_by_one(v)) {
+            *to = x;
+        }
+        all
+    };
     qdist_depth_f32 {
         struct_size: size_of::<qdist_depth_f32>() as u32,
         outcome: outcome(depth.outcome),
         lower: depth.lower,
         upper: depth.upper,
-        normal: one_by_one(&depth.normal).into(),
-        point_a: one_by_one(&depth.point_a).into(),
-        point_b: one_by_one(&depth.point_b).into(),
+        normal: vector(&depth.normal),
+        point_a: vector(&depth.point_a),
+        point_b: vector(&depth.point_b),
         dimension: depth.dimension as u32,
         iterations: depth.iterations,
         support_calls: depth.support_calls,

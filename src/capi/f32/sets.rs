@@ -10,7 +10,9 @@ use super::super::generic::{aligned, ask, coordinates, gaps, is_mirrored, length
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
-use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
+use super::super::symmetry::{
+    QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored, qdist_unbounded,
+};
 use crate::Body;
 use crate::depth::{BodyError, Matrix3};
 use crate::scalar::{Real, Vector};
@@ -76,9 +78,11 @@ pub struct qdist_body_f32 {
     /// Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
     /// about one axis a plane problem.
     pub symmetry: u32,
+    /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
+    pub unbounded: qdist_unbounded,
 }
 
-gaps!(qdist_body_f32, set.dimension..rotation, symmetry..);
+gaps!(qdist_body_f32, set.dimension..rotation, symmetry..unbounded, unbounded..);
 
 impl qdist_set_f32 {
     /// Checks the numbers for dimension `N`.
@@ -148,6 +152,7 @@ impl qdist_body_f32 {
             rolling_radius: 0.0,
             spread: 0.0,
             symmetry: QDIST_SYMMETRY_NONE,
+            unbounded: None,
         }
     }
 
@@ -239,16 +244,16 @@ pub unsafe extern "C" fn qdist_body_set_f32(body: *mut qdist_body_f32, set: *con
     status(fill())
 }
 
-/// The arguments of a support function in space, checked: the struct behind `user`, the direction, and room for the point.
+/// The arguments of a support function in dimension `N`, checked: the struct behind `user`, the direction, and room for the point.
 ///
 /// # Safety
-/// Each pointer that is neither NULL nor misaligned is valid for a `S`, for three numbers, and for writes of three numbers.
+/// Each pointer that is neither NULL nor misaligned is valid for a `S`, for `N` numbers, and for writes of `N` numbers.
 #[inline(always)]
-pub(super) unsafe fn arguments<'a, S>(
+pub(super) unsafe fn arguments<'a, S, const N: usize>(
     user: *mut c_void,
     direction: *const f32,
     point: *mut f32,
-) -> Check<(&'a S, &'a Vector<f32, 3>, *mut [f32; 3])> {
+) -> Check<(&'a S, &'a Vector<f32, N>, *mut [f32; N])> {
     let user = user.cast::<S>().cast_const();
     if user.is_null() || direction.is_null() || point.is_null() {
         return Err(QDIST_ERROR_NULL);

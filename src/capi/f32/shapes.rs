@@ -65,9 +65,9 @@ pub struct qdist_cone_f32 {
     pub half_height: f32,
 }
 
-/// A struct of this file as the set that it stands for.
-trait Shape {
-    type Set: Support<f32, 3>;
+/// A struct of shape as the set that it stands for.
+pub(super) trait Shape<const N: usize> {
+    type Set: Support<f32, N>;
     /// Checks the sizes.
     fn set(&self) -> Result<Self::Set, ShapeError>;
     /// Trusts them.
@@ -75,8 +75,8 @@ trait Shape {
 }
 
 macro_rules! shape {
-    ($struct:ty, $set:ty, |$s:ident| $($size:expr),+) => {
-        impl Shape for $struct {
+    ($struct:ty, $dimension:literal, $set:ty, |$s:ident| $($size:expr),+) => {
+        impl Shape<$dimension> for $struct {
             type Set = $set;
             fn set(&self) -> Result<Self::Set, ShapeError> {
                 let $s = self;
@@ -91,33 +91,31 @@ macro_rules! shape {
     };
 }
 
-shape!(qdist_sphere_f32, Sphere<f32, 3>, |s| s.radius);
-shape!(qdist_box_f32, BoxShape<f32, 3>, |s| Vector::from(s.half));
-shape!(qdist_ellipsoid_f32, Ellipsoid<f32, 3>, |s| Vector::from(s.semi_axes));
-shape!(qdist_cylinder_f32, Cylinder<f32>, |s| s.radius, s.half_height);
-shape!(qdist_capsule_f32, Capsule<f32>, |s| s.radius, s.half_height);
-shape!(qdist_cone_f32, Cone<f32>, |s| s.radius, s.half_height);
+pub(super) use shape;
 
-/// Fills a body with a shape.
+shape!(qdist_sphere_f32, 3, Sphere<f32, 3>, |s| s.radius);
+shape!(qdist_box_f32, 3, BoxShape<f32, 3>, |s| Vector::from(s.half));
+shape!(qdist_ellipsoid_f32, 3, Ellipsoid<f32, 3>, |s| Vector::from(s.semi_axes));
+shape!(qdist_cylinder_f32, 3, Cylinder<f32>, |s| s.radius, s.half_height);
+shape!(qdist_capsule_f32, 3, Capsule<f32, 3>, |s| s.radius, s.half_height);
+shape!(qdist_cone_f32, 3, Cone<f32>, |s| s.radius, s.half_height);
+
+/// The set of a shape, for the C interface and as it is.
 ///
 /// # Safety
-/// If not NULL and aligned, `body` is valid for writes and `shape` for reads.
-unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qdist_support_f32) -> Check {
-    aligned(body)?;
+/// If not NULL and aligned, `shape` is valid for reads.
+pub(super) unsafe fn set_of<S: Shape<N>, const N: usize>(
+    shape: *const S,
+    support: qdist_support_f32,
+) -> Check<(qdist_set_f32, S::Set)> {
     // SAFETY: the caller's promise.
     let set = unsafe { shared(shape) }?.set().map_err(from_shape)?;
-    let symmetry = match set.symmetry() {
-        Symmetry::None => QDIST_SYMMETRY_NONE,
-        Symmetry::Axis => QDIST_SYMMETRY_AXIS,
-        Symmetry::Full => QDIST_SYMMETRY_FULL,
-    };
     let mirrored: qdist_mirrored = match (set.mirrored(7), set.mirrored(3)) {
         (true, _) => Some(mirrored_always),
         (_, true) => Some(mirrored_sideways),
         _ => None,
     };
-    let rolling_radius = set.rolling_radius();
-    let set = qdist_set_f32 {
+    let made = qdist_set_f32 {
         support,
         exhaustive: None,
         mirrored,
@@ -125,11 +123,32 @@ unsafe fn fill<S: Shape>(body: *mut qdist_body_f32, shape: *const S, support: qd
         radius: set.radius(),
         extent: set.extent().at_least(tiny()),
         error: set.error().at_least(tiny()),
-        dimension: 3,
+        dimension: N as u32,
     };
+    Ok((made, set))
+}
+
+/// Fills a body with a shape.
+///
+/// # Safety
+/// If not NULL and aligned, `body` is valid for writes and `shape` for reads.
+unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f32, shape: *const S, support: qdist_support_f32) -> Check {
+    aligned(body)?;
+    // SAFETY: the caller's promise.
+    let (made, set) = unsafe { set_of(shape, support) }?;
+    let rolling_radius = set.rolling_radius();
+    let symmetry = from_symmetry(set.symmetry());
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { put(body, qdist_body_f32 { symmetry, rolling_radius, ..qdist_body_f32::at_origin(set) }) };
+    unsafe { put(body, qdist_body_f32 { symmetry, rolling_radius, ..qdist_body_f32::at_origin(made) }) };
     Ok(())
+}
+
+pub(super) fn from_symmetry(symmetry: Symmetry) -> u32 {
+    match symmetry {
+        Symmetry::None => QDIST_SYMMETRY_NONE,
+        Symmetry::Axis => QDIST_SYMMETRY_AXIS,
+        Symmetry::Full => QDIST_SYMMETRY_FULL,
+    }
 }
 
 /// The mirror function of solids of revolution.
@@ -142,9 +161,13 @@ unsafe extern "C" fn mirrored_sideways(_user: *mut c_void, signs: u32) -> i32 {
 /// # Safety
 /// Those of [`arguments`].
 #[inline(always)]
-unsafe fn ask<S: Shape>(user: *mut c_void, direction: *const f32, point: *mut f32) -> Check {
+pub(super) unsafe fn ask<S: Shape<N>, const N: usize>(
+    user: *mut c_void,
+    direction: *const f32,
+    point: *mut f32,
+) -> Check {
     // SAFETY: the caller's promise.
-    let (shape, u, room) = unsafe { arguments::<S>(user, direction, point) }?;
+    let (shape, u, room) = unsafe { arguments::<S, N>(user, direction, point) }?;
     let farthest = shape.trusted().support(u).map_err(|failure| failure.0)?;
     // SAFETY: `arguments` has checked it.
     unsafe { room.write(farthest.into()) };
@@ -209,40 +232,40 @@ pub unsafe extern "C" fn qdist_body_cone_f32(body: *mut qdist_body_f32, shape: *
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_sphere_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_sphere_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_sphere_f32, 3>(user, direction, point) })
 }
 
 /// Support function of a box.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_box_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_box_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_box_f32, 3>(user, direction, point) })
 }
 
 /// Support function of an ellipsoid's core.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_ellipsoid_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_ellipsoid_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_ellipsoid_f32, 3>(user, direction, point) })
 }
 
 /// Support function of a cylinder.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_cylinder_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_cylinder_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_cylinder_f32, 3>(user, direction, point) })
 }
 
 /// Support function of a capsule's core, a segment.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_capsule_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_capsule_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_capsule_f32, 3>(user, direction, point) })
 }
 
 /// Support function of a cone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_cone_support_f32(user: *mut c_void, direction: *const f32, point: *mut f32) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { ask::<qdist_cone_f32>(user, direction, point) })
+    status(unsafe { ask::<qdist_cone_f32, 3>(user, direction, point) })
 }

@@ -4,6 +4,9 @@ pub mod combine;
 pub mod gauges;
 #[cfg(feature = "grasp")]
 pub mod grasp;
+pub mod half_space;
+pub mod join;
+pub mod plane;
 pub mod points;
 pub mod query;
 pub mod sets;

@@ -26,7 +26,7 @@ use super::super::generic::{
 };
 use super::super::handle::{self, Opened, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, outcome, overflow, plan, qdist_interrupt,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, overflow, plan, qdist_interrupt,
     qdist_outcome, qdist_plan, qdist_status, status,
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
@@ -82,7 +82,8 @@ pub struct qdist_depth_f64 {
     /// minus their distance.
     pub lower: f64,
     pub upper: f64,
-    /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A.
+    /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
+    /// number is 0.)
     pub normal: [f64; 3],
     /// Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
     /// after B has been moved, or the nearest points of separated bodies.
@@ -197,6 +198,11 @@ pub unsafe extern "C" fn qdist_depth3_f64(
             known_size((&raw const (*result).struct_size).read(), size_of::<qdist_depth_f64>())?;
             (solver, a, b)
         };
+        if let Some(answer) = a.unbounded.or(b.unbounded) {
+            let (a, b): (*const qdist_body_f64, *const qdist_body_f64) = (a, b);
+            // SAFETY: a function of this library for these arguments, which are checked.
+            return from_status(unsafe { answer(a.cast(), b.cast(), options.cast(), result.cast()) });
+        }
         // SAFETY: what the header asks of the caller.
         let (a, b, options) = unsafe { (a.checked()?, b.checked()?, convert::<3>(options)) };
         // Taken by reference out of their `Result`s: to move a large struct that was just written takes long.
@@ -315,19 +321,27 @@ pub(super) unsafe fn convert<const N: usize>(options: *const qdist_options_f64) 
     Ok((Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess }, deadline))
 }
 
-fn conclude(outcome: Outcome) -> Check {
+pub(super) fn conclude(outcome: Outcome) -> Check {
     if outcome == Outcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
 }
 
-fn from_depth(depth: &Depth<f64>) -> qdist_depth_f64 {
+/// The result for C; the third numbers of vectors in the plane are 0.
+pub(super) fn from_depth<const N: usize>(depth: &Depth<f64, N>) -> qdist_depth_f64 {
+    let vector = |v: &Vector<f64, N>| {
+        let mut all = [0.0; 3];
+        for (to, &x) in all.iter_mut().zip(&one_by_one(v)) {
+            *to = x;
+        }
+        all
+    };
     qdist_depth_f64 {
         struct_size: size_of::<qdist_depth_f64>() as u32,
         outcome: outcome(depth.outcome),
         lower: depth.lower,
         upper: depth.upper,
-        normal: one_by_one(&depth.normal).into(),
-        point_a: one_by_one(&depth.point_a).into(),
-        point_b: one_by_one(&depth.point_b).into(),
+        normal: vector(&depth.normal),
+        point_a: vector(&depth.point_a),
+        point_b: vector(&depth.point_b),
         dimension: depth.dimension as u32,
         iterations: depth.iterations,
         support_calls: depth.support_calls,

@@ -1,0 +1,374 @@
+/* Bodies in the plane, half spaces and hulls of two bodies through the C interface: closed forms, witnesses, bad arguments, in both
+ * scalar types. The file includes itself once for each. */
+#ifndef REAL
+
+#include "qdist.h"
+#include "test.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#define JOIN_(name, suffix) name##suffix
+#define JOIN(name, suffix) JOIN_(name, suffix)
+#define Q(name) JOIN(name, SUFFIX)
+
+#define REAL double
+#define SUFFIX _f64
+#define WORDS QDIST_WORKSPACE_WORDS_F64
+#define WIDTH 1e-6
+#define MOST DBL_MAX
+#include "bodies.c"
+#undef REAL
+#undef SUFFIX
+#undef WORDS
+#undef WIDTH
+#undef MOST
+
+#define REAL float
+#define SUFFIX _f32
+#define WORDS QDIST_WORKSPACE_WORDS_F32
+#define WIDTH 1e-4
+#define MOST FLT_MAX
+#include "bodies.c"
+
+int main(void) {
+    bodies_f64();
+    bodies_f32();
+    CHECK(strcmp(qdist_status_string(QDIST_ERROR_UNBOUNDED), "half space where it cannot serve") == 0);
+    CHECK(strcmp(qdist_outcome_string(QDIST_UNBOUNDED), "unbounded") == 0);
+    return finish("bodies");
+}
+
+#else
+
+typedef Q(qdist_body) Q(body);
+typedef Q(qdist_body2) Q(flat);
+typedef Q(qdist_depth) Q(depth);
+
+static uint64_t Q(memory2)[WORDS(2, 32, 32)], Q(memory3)[WORDS(3, 128, 256)];
+static qdist_solver *Q(solver2), *Q(solver3);
+
+static Q(depth) Q(in_plane)(const Q(flat) *a, const Q(flat) *b) {
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_depth2)(Q(solver2), a, b, NULL, &depth) == QDIST_OK);
+    CHECK(depth.normal[2] == 0 && depth.point_a[2] == 0 && depth.point_b[2] == 0);
+    return depth;
+}
+
+static Q(depth) Q(in_space)(const Q(body) *a, const Q(body) *b) {
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_depth3)(Q(solver3), a, b, NULL, &depth) == QDIST_OK);
+    return depth;
+}
+
+/* The bracket contains d, is narrow, the outcome fits, and the points are depth * normal apart. */
+static void Q(expect)(const Q(depth) *depth, double d, int line) {
+    const double slack = WIDTH * fabs(d) + 0.25 * WIDTH;
+    double off = 0;
+    int i;
+    check(depth->lower <= d && d <= depth->upper, "the bracket holds", __FILE__, line);
+    check(depth->upper - depth->lower <= slack, "the bracket is narrow", __FILE__, line);
+    if (d > 0) {
+        const int met = depth->upper - depth->lower <= WIDTH * depth->lower;
+        check(depth->outcome == (met ? QDIST_CONVERGED : QDIST_PRECISION), "the outcome fits", __FILE__, line);
+    } else {
+        check(depth->outcome == (d < 0 ? QDIST_SEPARATED : QDIST_TOUCHING), "the outcome fits", __FILE__, line);
+    }
+    for (i = 0; i < 3; ++i) off = fmax(off, fabs(depth->point_a[i] - depth->point_b[i] - d * depth->normal[i]));
+    check(off <= 4 * sqrt(slack), "the points are depth * normal apart", __FILE__, line);
+}
+
+static void Q(place)(Q(flat) *body, double c, double s, double x, double y) {
+    body->rotation[0] = body->rotation[3] = (REAL)c;
+    body->rotation[2] = (REAL)s;
+    body->rotation[1] = -body->rotation[2];
+    body->translation[0] = (REAL)x;
+    body->translation[1] = (REAL)y;
+}
+
+static void Q(plane_shapes)(void) {
+    const Q(qdist_disc) disc = {0.5f};
+    const Q(qdist_box2) box = {{1, 2}};
+    const Q(qdist_ellipse) ellipse = {{2, 1}};
+    const Q(qdist_capsule2) capsule = {0.5f, 2};
+    /* A triangle, in any order, with a point inside. */
+    const REAL corners[] = {0, 0, 4, 0, 0, 3, 1, 1};
+    const REAL far_corners[] = {1000, 1000, 1004, 1000, 1000, 1003};
+    const Q(qdist_points) triangle = {corners, 4, 2}, far_triangle = {far_corners, 3, 2};
+    Q(flat) a, b;
+    Q(depth) depth;
+
+    CHECK(Q(qdist_body2_disc)(&a, &disc) == QDIST_OK && Q(qdist_body2_disc)(&b, &disc) == QDIST_OK);
+    Q(place)(&b, 1, 0, 0.75, 0);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, 0.25, __LINE__);
+    CHECK(depth.normal[0] == 1 && depth.dimension <= 2);
+    Q(place)(&b, 1, 0, 3, 4);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, -4, __LINE__);
+
+    CHECK(Q(qdist_body2_box)(&a, &box) == QDIST_OK);
+    Q(place)(&b, 1, 0, 1.25, 0.5);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, 0.25, __LINE__);
+    Q(place)(&a, 0, 1, 0, 0); /* a quarter turn: 2 wide and 1 high */
+    Q(place)(&b, 1, 0, 2.25, 0.5);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, 0.25, __LINE__);
+    CHECK(Q(qdist_body2_box)(&b, &box) == QDIST_OK);
+    Q(place)(&b, 1, 0, 3, 0);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, 0, __LINE__);
+
+    CHECK(Q(qdist_body2_ellipse)(&a, &ellipse) == QDIST_OK && Q(qdist_body2_disc)(&b, &disc) == QDIST_OK);
+    Q(place)(&b, 1, 0, 3.5, 0);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, -1, __LINE__);
+
+    CHECK(Q(qdist_body2_capsule)(&a, &capsule) == QDIST_OK);
+    Q(place)(&b, 1, 0, 3, 6); /* from (0, 2): (3, 4) */
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, -4, __LINE__);
+
+    /* The hypotenuse 3 x + 4 y = 12; along its normal (0.6, 0.8), disc's centre 0.25 outside. */
+    CHECK(Q(qdist_body2_points)(&a, &triangle) == QDIST_OK);
+    Q(place)(&b, 1, 0, 2 + 0.15, 1.5 + 0.2);
+    depth = Q(in_plane)(&a, &b);
+    CHECK(depth.lower <= 0.25 + WIDTH && depth.upper >= 0.25 - WIDTH && depth.upper - depth.lower <= WIDTH);
+    CHECK(fabs(depth.normal[0] - 0.6) < 1e-3 && fabs(depth.normal[1] - 0.8) < 1e-3);
+    CHECK(Q(qdist_body2_points)(&a, &far_triangle) == QDIST_OK && a.spread > 0);
+    Q(place)(&a, 1, 0, -1000, -1000);
+    Q(place)(&b, 1, 0, 2, -0.25);
+    depth = Q(in_plane)(&a, &b);
+    Q(expect)(&depth, 0.25, __LINE__);
+
+    /* Any set: the triangle by the support function of lists of any dimension. */
+    {
+        Q(qdist_set) set;
+        CHECK(Q(qdist_set_points)(&set, &triangle) == QDIST_OK && Q(qdist_body2_set)(&a, &set) == QDIST_OK);
+        depth = Q(in_plane)(&a, &b);
+        Q(expect)(&depth, 0.25, __LINE__);
+    }
+}
+
+static void Q(plane_arguments)(void) {
+    const Q(qdist_disc) disc = {1}, negative = {-1};
+    const REAL corners[] = {0, 0, 0, 4, 0, 0};
+    const Q(qdist_points) in_space = {corners, 2, 3};
+    const Q(qdist_half_plane) none = {{0, 0}, 1};
+    Q(flat) a, b;
+    Q(qdist_join2) join;
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_body2_disc)(NULL, &disc) == QDIST_ERROR_NULL && Q(qdist_body2_disc)(&a, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_body2_disc)(&a, &negative) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_body2_points)(&a, &in_space) == QDIST_ERROR_DIMENSION);
+    CHECK(Q(qdist_body2_half_plane)(&a, &none) == QDIST_ERROR_ARGUMENT);
+    CHECK(Q(qdist_body2_disc)(&a, &disc) == QDIST_OK && Q(qdist_body2_disc)(&b, &disc) == QDIST_OK);
+    CHECK(Q(qdist_depth2)(Q(solver3), &a, &b, NULL, &depth) == QDIST_ERROR_DIMENSION);
+    CHECK(Q(qdist_depth2)(Q(solver2), NULL, &b, NULL, &depth) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_depth2)(Q(solver2), &a, &b, NULL, NULL) == QDIST_ERROR_NULL);
+    b.rotation[3] = -1; /* a mirror */
+    CHECK(Q(qdist_depth2)(Q(solver2), &a, &b, NULL, &depth) == QDIST_ERROR_ROTATION);
+    b.rotation[3] = 1;
+    b.translation[1] = (REAL)NAN;
+    CHECK(Q(qdist_depth2)(Q(solver2), &a, &b, NULL, &depth) == QDIST_ERROR_NONFINITE);
+    b.translation[1] = 0;
+    depth.struct_size = 1;
+    CHECK(Q(qdist_depth2)(Q(solver2), &a, &b, NULL, &depth) == QDIST_ERROR_STRUCT_SIZE);
+    join.a = &a;
+    join.b = NULL;
+    CHECK(Q(qdist_body2_join)(&b, &join) == QDIST_ERROR_NULL && Q(qdist_body2_join)(&b, NULL) == QDIST_ERROR_NULL);
+}
+
+static void Q(half_planes)(void) {
+    const Q(qdist_half_plane) ground = {{0, 2}, 1}; /* y <= 1/2 */
+    const Q(qdist_box2) box = {{1, 1}};
+    Q(qdist_join2) join;
+    Q(flat) a, b, c;
+    Q(depth) depth;
+    CHECK(Q(qdist_body2_half_plane)(&a, &ground) == QDIST_OK && Q(qdist_body2_box)(&b, &box) == QDIST_OK);
+    Q(place)(&b, 0.6, 0.8, 100, 1.5); /* reaches 1.4 down */
+    depth = Q(in_plane)(&b, &a);
+    CHECK(fabs(depth.lower - 0.4) < WIDTH && fabs(depth.upper - 0.4) < WIDTH && depth.outcome == QDIST_CONVERGED);
+    CHECK(depth.normal[1] == -1 && fabs(depth.point_b[1] - 0.5) < WIDTH && depth.support_calls == 1);
+    depth = Q(in_plane)(&a, &b);
+    CHECK(depth.normal[1] == 1 && fabs(depth.point_a[1] - 0.5) < WIDTH);
+    depth = Q(in_plane)(&a, &a);
+    CHECK(depth.outcome == QDIST_UNBOUNDED && depth.lower == MOST && depth.upper == MOST);
+    join.a = &a;
+    join.b = &b;
+    CHECK(Q(qdist_body2_join)(&c, &join) == QDIST_ERROR_UNBOUNDED);
+}
+
+static void Q(half_spaces)(void) {
+    const Q(qdist_half_space) ground = {{0, 0, 1}, 0}, ceiling = {{0, 0, -1}, -3}, bad = {{0, 0, (REAL)NAN}, 0};
+    const Q(qdist_sphere) ball = {0.5f};
+    const Q(qdist_box) box = {{1, 1, 1}};
+    Q(qdist_options) options;
+    Q(qdist_result) result;
+    Q(body) a, b, c;
+    Q(depth) depth;
+    CHECK(Q(qdist_body_half_space)(&a, &bad) == QDIST_ERROR_NONFINITE && Q(qdist_body_half_space)(&a, NULL) == QDIST_ERROR_NULL);
+    CHECK(Q(qdist_body_half_space)(&a, &ground) == QDIST_OK && Q(qdist_body_sphere)(&b, &ball) == QDIST_OK);
+    b.translation[0] = 10000;
+    b.translation[2] = 0.375f;
+    depth = Q(in_space)(&b, &a);
+    Q(expect)(&depth, 0.125, __LINE__);
+    CHECK(depth.normal[2] == -1 && depth.point_b[2] == 0 && depth.upper - depth.lower <= 0.1 * WIDTH);
+    b.translation[2] = 0.5f;
+    depth = Q(in_space)(&a, &b);
+    Q(expect)(&depth, 0, __LINE__);
+    b.translation[2] = 2.5f;
+    depth = Q(in_space)(&a, &b);
+    Q(expect)(&depth, -2, __LINE__);
+    CHECK(Q(qdist_body_box)(&b, &box) == QDIST_OK);
+    a.translation[2] = 0.75f;
+    depth = Q(in_space)(&b, &a);
+    Q(expect)(&depth, 1.75, __LINE__);
+    CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+    options.use_threshold = 1;
+    options.threshold = 2;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_depth3)(Q(solver3), &b, &a, &options, &depth) == QDIST_OK && depth.outcome == QDIST_BELOW);
+    options.relative = -1;
+    CHECK(Q(qdist_depth3)(Q(solver3), &b, &a, &options, &depth) == QDIST_ERROR_ARGUMENT);
+    a.rotation[0] = 2;
+    CHECK(Q(qdist_depth3)(Q(solver3), &b, &a, NULL, &depth) == QDIST_ERROR_ROTATION);
+    a.rotation[0] = 1;
+    a.translation[2] = 0;
+    /* Floor and ceiling, 3 apart. */
+    CHECK(Q(qdist_body_half_space)(&c, &ceiling) == QDIST_OK);
+    depth = Q(in_space)(&a, &c);
+    Q(expect)(&depth, -3, __LINE__);
+    depth = Q(in_space)(&a, &a);
+    CHECK(depth.outcome == QDIST_UNBOUNDED && depth.lower == MOST && depth.upper == MOST);
+    /* As a set of a query it says what it is. */
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_solve3)(Q(solver3), &a.set, NULL, NULL, &result) == QDIST_ERROR_CALLBACK);
+    CHECK(result.callback_code == QDIST_ERROR_UNBOUNDED);
+}
+
+static void Q(joins)(void) {
+    const Q(qdist_sphere) big = {1}, small = {0.5f}, probe_ball = {0.25f};
+    const Q(qdist_cylinder) disc = {1, 0}, lid = {0.5f, 0};
+    const Q(qdist_box) box = {{1, 1, 1}};
+    const Q(qdist_half_space) ground = {{0, 0, 1}, 0};
+    Q(body) a, b, c, probe, hull, outer;
+    Q(qdist_join) join, again;
+    Q(depth) depth;
+    CHECK(Q(qdist_body_sphere)(&a, &big) == QDIST_OK && Q(qdist_body_sphere)(&b, &small) == QDIST_OK);
+    CHECK(Q(qdist_body_sphere)(&probe, &probe_ball) == QDIST_OK);
+    b.translation[2] = 4;
+    join.a = &a;
+    join.b = &b;
+    CHECK(Q(qdist_body_join)(&hull, &join) == QDIST_OK);
+    CHECK(hull.set.radius == 0.5f && hull.symmetry == QDIST_SYMMETRY_AXIS && hull.set.exhaustive == NULL);
+    /* Over the tip, beside the big ball, and on the axis inside: 1.125 at z = 1, since the side leans by 1/8. */
+    probe.translation[2] = 5;
+    depth = Q(in_space)(&hull, &probe);
+    Q(expect)(&depth, -0.25, __LINE__);
+    probe.translation[2] = -1;
+    depth = Q(in_space)(&hull, &probe);
+    Q(expect)(&depth, 0.25, __LINE__);
+    probe.translation[2] = 1;
+    depth = Q(in_space)(&hull, &probe);
+    CHECK(fabs(depth.upper - (1 - 0.125 + 0.25)) <= 4 * WIDTH);
+    /* Below, it stands in the ground. */
+    CHECK(Q(qdist_body_half_space)(&c, &ground) == QDIST_OK);
+    hull.translation[2] = 0.75f;
+    depth = Q(in_space)(&hull, &c);
+    Q(expect)(&depth, 0.25, __LINE__);
+    again.a = &hull;
+    again.b = &c;
+    CHECK(Q(qdist_body_join)(&outer, &again) == QDIST_ERROR_UNBOUNDED);
+
+    /* A frustum of two discs: the lid at z = 1. */
+    CHECK(Q(qdist_body_cylinder)(&a, &disc) == QDIST_OK && Q(qdist_body_cylinder)(&b, &lid) == QDIST_OK);
+    b.translation[2] = 1;
+    CHECK(Q(qdist_body_join)(&hull, &join) == QDIST_OK && hull.set.radius == 0);
+    probe.translation[2] = 1.125f;
+    depth = Q(in_space)(&hull, &probe);
+    Q(expect)(&depth, 0.125, __LINE__);
+
+    /* A box swept along x, then joined with itself turned upside down: the same set. */
+    CHECK(Q(qdist_body_box)(&a, &box) == QDIST_OK && Q(qdist_body_box)(&b, &box) == QDIST_OK);
+    b.translation[0] = 4;
+    CHECK(Q(qdist_body_join)(&hull, &join) == QDIST_OK && hull.symmetry == QDIST_SYMMETRY_NONE);
+    again.a = again.b = &hull;
+    CHECK(Q(qdist_body_join)(&outer, &again) == QDIST_OK);
+    probe.translation[0] = 2;
+    depth = Q(in_space)(&outer, &probe);
+    Q(expect)(&depth, 0.125, __LINE__);
+    CHECK(Q(qdist_body_join)(&hull, NULL) == QDIST_ERROR_NULL && Q(qdist_body_join)(NULL, &join) == QDIST_ERROR_NULL);
+    b.rotation[0] = 2;
+    CHECK(Q(qdist_body_join)(&hull, &join) == QDIST_ERROR_ROTATION);
+}
+
+/* Sets of any dimension, by lists of one point: a unit ball at 6 on the first axis, and one of radius 1/2 at 2. */
+static void Q(joined_sets)(void) {
+    static uint64_t memory[WORDS(4, 64, 256)];
+    const REAL near[] = {2, 0, 0, 0}, far[] = {6, 0, 0, 0};
+    const Q(qdist_points) large = {far, 1, 4}, tip = {near, 1, 4};
+    qdist_solver *solver;
+    Q(qdist_set) a, b, join, unknown;
+    Q(qdist_pair) pair;
+    Q(qdist_result) result;
+    CHECK(Q(qdist_solver_init4)(memory, sizeof memory, 64, 256, &solver) == QDIST_OK);
+    CHECK(Q(qdist_set_points)(&a, &large) == QDIST_OK && Q(qdist_set_points)(&b, &tip) == QDIST_OK);
+    a.radius = 1;
+    b.radius = 0.5f;
+    pair.a = &a;
+    pair.b = &b;
+    pair.dimension = 4;
+    CHECK(Q(qdist_set_join)(&join, &pair) == QDIST_OK && join.radius == 0.5f);
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    CHECK(Q(qdist_solve4)(solver, &join, NULL, NULL, &result) == QDIST_OK);
+    CHECK(result.lower <= -1.5 && -1.5 <= result.upper && result.upper - result.lower <= 2 * WIDTH);
+    unknown = a;
+    unknown.extent = 0;
+    pair.a = &unknown;
+    CHECK(Q(qdist_set_join)(&join, &pair) == QDIST_ERROR_ARGUMENT && Q(qdist_set_join)(&join, NULL) == QDIST_ERROR_NULL);
+}
+
+static void Q(joins_in_plane)(void) {
+    const Q(qdist_disc) big = {1}, small = {0.5f};
+    Q(qdist_join2) join;
+    Q(flat) a, b, hull, probe;
+    Q(depth) depth;
+    CHECK(Q(qdist_body2_disc)(&a, &big) == QDIST_OK && Q(qdist_body2_disc)(&b, &small) == QDIST_OK);
+    CHECK(Q(qdist_body2_disc)(&probe, &small) == QDIST_OK);
+    b.translation[0] = 4;
+    join.a = &a;
+    join.b = &b;
+    CHECK(Q(qdist_body2_join)(&hull, &join) == QDIST_OK && hull.set.radius == 0.5f);
+    probe.translation[0] = 6;
+    depth = Q(in_plane)(&hull, &probe);
+    Q(expect)(&depth, -1, __LINE__);
+    probe.translation[0] = -1;
+    depth = Q(in_plane)(&hull, &probe);
+    Q(expect)(&depth, 0.5, __LINE__);
+}
+
+static void JOIN(bodies, SUFFIX)(void) {
+    CHECK(Q(qdist_solver_init2)(Q(memory2), sizeof Q(memory2), 32, 32, &Q(solver2)) == QDIST_OK);
+    CHECK(Q(qdist_solver_init3)(Q(memory3), sizeof Q(memory3), 128, 256, &Q(solver3)) == QDIST_OK);
+    Q(plane_shapes)();
+    Q(plane_arguments)();
+    Q(half_planes)();
+    Q(half_spaces)();
+    Q(joins)();
+    Q(joins_in_plane)();
+    Q(joined_sets)();
+}
+
+#endif
