@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-template <class T, class Box, class Sphere, class Points>
+template <class T, class Box, class Sphere, class Points, class HalfSpace>
 static void smoke() {
     static qdist::Solver<T, 3, 64, 128> solver;
     const Box box{{1, 2, 3}};
@@ -36,10 +36,22 @@ static void smoke() {
     CHECK(square.status == QDIST_OK);
     const auto answer = qdist::solve(plane, square);
     CHECK(answer && answer.lower <= 1 && 1 <= answer.upper && answer.upper - answer.lower < T(1e-3));
+
+    // Two of them side by side, and a ball on the ground.
+    const auto left = qdist::body2(list);
+    auto right = left;
+    right.translation[0] = T(1.75);
+    const auto side = qdist::depth(plane, left, right);
+    CHECK(side && side.outcome == QDIST_CONVERGED && side.lower <= T(0.25) && T(0.25) <= side.upper && side.normal[0] == 1);
+    const HalfSpace floor{{0, 0, 1}, 0};
+    const auto ground = qdist::body(floor);
+    b.translation[2] = T(0.25);
+    const auto contact = qdist::depth(solver, b, ground);
+    CHECK(contact && contact.lower <= T(0.25) && T(0.25) <= contact.upper && contact.normal[2] == -1);
 }
 
 int main() {
-    smoke<double, qdist_box_f64, qdist_sphere_f64, qdist_points_f64>();
-    smoke<float, qdist_box_f32, qdist_sphere_f32, qdist_points_f32>();
+    smoke<double, qdist_box_f64, qdist_sphere_f64, qdist_points_f64, qdist_half_space_f64>();
+    smoke<float, qdist_box_f32, qdist_sphere_f32, qdist_points_f32, qdist_half_space_f32>();
     return finish("smoke_cpp");
 }

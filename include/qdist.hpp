@@ -48,6 +48,7 @@ private:
     struct Api<T> {                                                                                                        \
         using Set = qdist_set_##suffix;                                                                                    \
         using Body = qdist_body_##suffix;                                                                                  \
+        using Body2 = qdist_body2_##suffix;                                                                                \
         using Gauge = qdist_gauge_##suffix;                                                                                \
         using Options = qdist_options_##suffix;                                                                            \
         using Depth = qdist_depth_##suffix;                                                                                \
@@ -75,6 +76,10 @@ private:
                                   Depth *result) noexcept {                                                                \
             return qdist_depth3_##suffix(solver, a, b, options, result);                                                   \
         }                                                                                                                  \
+        static qdist_status depth(qdist_solver *solver, const Body2 *a, const Body2 *b, const Options *options,            \
+                                  Depth *result) noexcept {                                                                \
+            return qdist_depth2_##suffix(solver, a, b, options, result);                                                   \
+        }                                                                                                                  \
         static Options options() noexcept {                                                                                \
             Options options;                                                                                               \
             qdist_options_default_##suffix(&options);                                                                      \
@@ -90,6 +95,16 @@ private:
     QDIST_HPP_BODY(suffix, points)                                                                                         \
     QDIST_HPP_BODY(suffix, hull)                                                                                           \
     QDIST_HPP_BODY(suffix, set)                                                                                            \
+    QDIST_HPP_BODY(suffix, half_space)                                                                                     \
+    QDIST_HPP_BODY(suffix, join)                                                                                           \
+    QDIST_HPP_BODY2(suffix, disc, disc)                                                                                    \
+    QDIST_HPP_BODY2(suffix, box, box2)                                                                                     \
+    QDIST_HPP_BODY2(suffix, ellipse, ellipse)                                                                              \
+    QDIST_HPP_BODY2(suffix, capsule, capsule2)                                                                             \
+    QDIST_HPP_BODY2(suffix, points, points)                                                                                \
+    QDIST_HPP_BODY2(suffix, set, set)                                                                                      \
+    QDIST_HPP_BODY2(suffix, half_plane, half_plane)                                                                        \
+    QDIST_HPP_BODY2(suffix, join, join2)                                                                                   \
     QDIST_HPP_SET(suffix)
 
 // A body of a shape, in the identity pose; it points at the shape. A wrong shape gives a body that every query
@@ -101,6 +116,15 @@ private:
         return b;                                                                                                          \
     }                                                                                                                      \
     void body(const qdist_##shape##_##suffix &&) = delete;
+
+// The same for a body in the plane.
+#define QDIST_HPP_BODY2(suffix, name, shape)                                                                               \
+    inline Checked<qdist_body2_##suffix> body2(const qdist_##shape##_##suffix &s) noexcept {                               \
+        Checked<qdist_body2_##suffix> b{};                                                                                 \
+        b.status = qdist_body2_##name##_##suffix(&b, &s);                                                                  \
+        return b;                                                                                                          \
+    }                                                                                                                      \
+    void body2(const qdist_##shape##_##suffix &&) = delete;
 
 // The same for a set of points of any dimension.
 #define QDIST_HPP_SET(suffix)                                                                                              \
@@ -115,6 +139,7 @@ QDIST_HPP_SCALAR(double, f64, F64)
 QDIST_HPP_SCALAR(float, f32, F32)
 
 #undef QDIST_HPP_SET
+#undef QDIST_HPP_BODY2
 #undef QDIST_HPP_BODY
 #undef QDIST_HPP_SCALAR
 
@@ -127,6 +152,17 @@ typename Api<T>::Options options() noexcept {
 template <class T, uint32_t V, uint32_t F>
 Checked<typename Api<T>::Depth> depth(Solver<T, 3, V, F> &solver, const typename Api<T>::Body &a,
                                       const typename Api<T>::Body &b,
+                                      const typename Api<T>::Options *options = nullptr) noexcept {
+    Checked<typename Api<T>::Depth> result{};
+    result.struct_size = sizeof(typename Api<T>::Depth);
+    result.status = Api<T>::depth(solver.get(), &a, &b, options, &result);
+    return result;
+}
+
+// The same in the plane.
+template <class T, uint32_t V, uint32_t F>
+Checked<typename Api<T>::Depth> depth(Solver<T, 2, V, F> &solver, const typename Api<T>::Body2 &a,
+                                      const typename Api<T>::Body2 &b,
                                       const typename Api<T>::Options *options = nullptr) noexcept {
     Checked<typename Api<T>::Depth> result{};
     result.struct_size = sizeof(typename Api<T>::Depth);
