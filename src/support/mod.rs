@@ -147,4 +147,17 @@ pub trait Support<T: Real, const N: usize> {
     fn error(&self) -> T {
         T::count(16 * N) * T::ROUNDOFF * self.extent()
     }
+
+    /// The same coordinate by coordinate: the promise holds with sum of e_i |u_i| in the place of e |u|, and with the box of half lengths e_i in
+    /// that of the ball of radius e. A body that is long in some directions is known better along the others. The default is
+    /// [`error`](Support::error) for every coordinate.
+    fn errors(&self) -> Vector<T, N> {
+        Vector::repeat(self.error())
+    }
+
+    /// Upper bounds of |x_i| over the core, coordinate by coordinate; zeros where [`extent`](Support::extent) is not known. The default is the
+    /// extent for every coordinate.
+    fn extents(&self) -> Vector<T, N> {
+        Vector::repeat(self.extent())
+    }
 }
