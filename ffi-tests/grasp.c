@@ -119,6 +119,36 @@ static void Q(closures)(qdist_solver *solver) {
     CHECK(Q(qdist_force_closure)(solver, &sets[1], NULL, &closure) == QDIST_OK);
     CHECK(closure.verdict == QDIST_CLOSURE_OPEN && fabs(closure.direction[3]) > 0.9999); /* it spins about the x axis */
 
+    /* Three fingertips with little friction and a small torque scale, which is none of closure's business; undecided after one point. */
+    {
+        const Q(qdist_wrench_frame) tight = {{0, 0, 0}, (REAL)1e-3};
+        Q(qdist_contact) ring[3];
+        Q(qdist_primitive) few[3];
+        const Q(qdist_wrenches) three = {few, 3, QDIST_L1};
+        Q(qdist_options) options;
+        Q(qdist_set) set;
+        int i;
+        for (i = 0; i < 3; ++i) {
+            const double x = i == 0 ? 1 : -0.5, y = i == 0 ? 0 : i == 1 ? 0.86602540378443865 : -0.86602540378443865;
+            ring[i] = Q(fingertip)(1, 0.01, 0);
+            ring[i].friction = QDIST_HARD;
+            ring[i].position[0] = (REAL)x;
+            ring[i].position[1] = (REAL)y;
+            ring[i].position[2] = 0;
+            ring[i].normal[0] = (REAL)-x;
+            ring[i].normal[1] = (REAL)-y;
+            ring[i].normal[2] = 0;
+            memset(ring[i].tangents, 0, sizeof ring[i].tangents);
+        }
+        CHECK(Q(qdist_passive_primitives)(ring, 3, &tight, few, NULL) == QDIST_OK);
+        CHECK(Q(qdist_set_wrenches)(&set, &three) == QDIST_OK && Q(qdist_options_default)(&options) == QDIST_OK);
+        CHECK(Q(qdist_force_closure)(solver, &set, NULL, &closure) == QDIST_OK);
+        CHECK(closure.verdict == QDIST_CLOSURE_CLOSED && closure.radius > 0);
+        options.max_iterations = 1;
+        CHECK(Q(qdist_force_closure)(solver, &set, &options, &closure) == QDIST_OK);
+        CHECK(closure.verdict == QDIST_CLOSURE_UNDECIDED && closure.radius == 0);
+    }
+
     /* The best of the two is the one that holds. */
     best.struct_size = sizeof best;
     best.result.struct_size = sizeof result;

@@ -251,7 +251,7 @@ static void Q(choose)(void) {
     slot((contact).position, 3, ALL), slot((contact).normal, 3, ALL), slot((contact).tangents, 6, ALL), slot(&(contact).mu, 1, ALL), \
         slot(&(contact).mus, 1, ALL), slot(&(contact).force_cap, 1, ALL)
 #define FRAME_SLOT() slot(W.frame.reference, 3, ALL), slot(&W.frame.torque_scale, 1, ALL)
-#define PRIMITIVE_SLOT(primitive) slot((primitive).center, 6, ALL), slot((primitive).disc, 18, ALL), slot(&(primitive).rounding, 1, ALL)
+#define PRIMITIVE_SLOT(primitive) slot((primitive).center, 6, ALL), slot((primitive).disc, 18, ALL), slot((primitive).rounding, 6, ALL)
 #define FINGER()                                                                                                       \
     Q(qdist_finger_init)(&W.finger, W.contacts, 1, W.limits, QDIST_FORCE_MODEL_PASSIVE, &W.frame, 0, NULL), \
         W.fingers.fingers = &W.finger, W.fingers.count = 1, W.fingers.norm = QDIST_LINF

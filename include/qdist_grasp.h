@@ -107,13 +107,14 @@ typedef int32_t qdist_kink;
 // o is the projection of (1.2, 2.3, 3.4); edges have unit length.
 #define QDIST_TOOL_FROGGER 2
 
-// No, or by no more than rounding can tell: `direction` separates.
+// No: along `direction` the set does not reach beyond half of its own rounding, some 20 to 60 roundoffs of the wrenches that the height is made of. d
+// cannot be told from 0.
 #define QDIST_CLOSURE_OPEN 0
 
-// Yes: the wrench set contains a ball of `radius` > 0 around the origin.
+// Yes, for certain: the wrench set contains a ball of `radius` > 0 around the origin.
 #define QDIST_CLOSURE_CLOSED 1
 
-// Memory, iterations or `interrupt` ended the query before either was certain.
+// Neither is proved: d is above 0 by little more than rounding, if it is; or memory, iterations or `interrupt` ended the query.
 #define QDIST_CLOSURE_UNDECIDED 2
 
 // It has one.
@@ -198,8 +199,8 @@ typedef struct {
     double center[6];
     // disc[6 * column + row].
     double disc[18];
-    // How far rounding may have moved them.
-    double rounding;
+    // How far rounding may have moved each coordinate of them.
+    double rounding[6];
     // 1: the contact can exert nothing.
     uint32_t empty;
 } qdist_primitive_f64;
@@ -289,8 +290,8 @@ typedef struct {
     qdist_closure verdict;
     // QDIST_CLOSURE_CLOSED: the wrench set contains the ball of this radius, which proves closure; d can be much larger. Else 0.
     double radius;
-    // QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w > 0, beyond rounding; the external wrench -u
-    // cannot be resisted at all. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
+    // QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w above its own rounding; the external wrench -u
+    // is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
     double direction[6];
 } qdist_closure_f64;
 
@@ -307,7 +308,8 @@ typedef struct {
 } qdist_best_f64;
 
 // Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
-// support function. Tolerances and threshold of the options are not used.
+// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
+// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
 qdist_status qdist_force_closure_f64(qdist_solver *solver,
                                      const qdist_set_f64 *set,
                                      const qdist_options_f64 *options,
@@ -659,7 +661,7 @@ typedef struct {
 typedef struct {
     float center[6];
     float disc[18];
-    float rounding;
+    float rounding[6];
     uint32_t empty;
 } qdist_primitive_f32;
 

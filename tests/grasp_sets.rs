@@ -313,3 +313,45 @@ fn lists_name_the_contact() {
     let huge = Primitive::new(Vector::repeat(f64::NAN), SMatrix::zeros());
     assert_eq!(huge, Err(ContactError::Wrench));
 }
+
+/// The promise of a support function coordinate by coordinate, for the contacts' exact numbers: moments a million times as large as forces, or
+/// as small, leave the rounding of forces as it is.
+#[test]
+fn rounding_is_known_row_by_row() {
+    let mut dice = Dice::new(91);
+    let (mut tightest, mut asked) = (f64::MAX, 0);
+    for _ in 0..300 {
+        let frame = WrenchFrame::new(vector([0.1, -0.2, 0.3]), (dice.decade(-6.0, 6.0)) as f32).unwrap();
+        let contacts: Vec<Contact<f32>> = (0..1 + dice.below(5)).map(|_| random_contact(&mut dice, 1.0)).collect();
+        let mut memory = vec![Primitive::empty(); contacts.len()];
+        wrenches(&contacts, &frame, &mut memory).unwrap();
+        for norm in [Norm::L1, Norm::LInf] {
+            let set = WrenchSet::new(&memory, norm);
+            let (errors, extents) = (wide(&set.errors()), wide(&set.extents()));
+            let height = |u: &Vector<f64, 6>| {
+                let own = contacts.iter().map(|c| value(c, &frame, u).max(0.0));
+                if norm == Norm::L1 { own.fold(0.0, f64::max) } else { own.sum() }
+            };
+            // Directions along which all rows count alike.
+            let even = |dice: &mut Dice| Vector::from(direction(dice)).component_div(&errors.map(|e| e / errors.max()));
+            for _ in 0..20 {
+                let u = even(&mut dice);
+                let narrow = vector::<f32, 6>((u / u.amax()).into());
+                let u = wide(&narrow);
+                let point = wide(&set.support(&narrow).unwrap());
+                let allowed = errors.dot(&u.abs());
+                let exact = height(&u);
+                assert!(point.dot(&u) >= exact - allowed, "{} {exact} {allowed}", point.dot(&u));
+                assert!((0..6).all(|i| point[i].abs() <= extents[i]), "{point} {extents}");
+                let v = even(&mut dice);
+                assert!(point.dot(&v) <= height(&v) + errors.dot(&v.abs()));
+                if exact > 0.0 {
+                    tightest = tightest.min(allowed / errors.norm());
+                    asked += 1;
+                }
+            }
+            assert!(errors.norm() <= 2.0 * f64::from(set.error()), "{errors} {}", set.error());
+        }
+    }
+    assert!(asked > 3000 && tightest < 1e-4, "{asked} {tightest}");
+}

@@ -5,22 +5,21 @@
 //! cargo run --release --features std --example grasp -- ../shared/data/grasps/grasps.json
 //! ```
 //!
-//! * `--csv`: one line for every reference, and nothing else on the standard output.
-//! * `--plot DIR`: a picture for every reference, as `DIR/ID_REF.svg`.
-//! * `--relative R`: the tolerance, 1e-4 otherwise, where Q is a ball or an ellipsoid. Polytopes and segments are solved to 1e-10.
-//! * `--table1`: the paper's Table I beside ours; needs no file.
-//!
-//! What the file may say is told in `input.rs`. A grasp without `refs` is asked for a ball, with both sets and norms.
+//! `--help` tells what it takes, and how a file looks. What the file may say in full is told in `input.rs`. A grasp without `refs` is asked for a ball, with
+//! both norms, and with W^a where a contact has a Jacobian.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use qdist::grasp::Norm;
 
 mod csv;
+mod field;
 mod gauges;
 mod input;
+mod keys;
 mod plot;
 mod query;
 mod sets;
@@ -38,7 +37,35 @@ use sets::Sets;
 /// What is wrong, in words.
 type Trouble = String;
 
-const USAGE: &str = "usage: grasp FILE.json [--csv] [--plot DIR] [--relative R]\n       grasp --table1";
+const USAGE: &str = "usage: grasp FILE.json [--csv] [--plot DIR] [--relative R] [--normalize]\n       grasp --table1\n       grasp --help";
+
+const HELP: &str = r#"
+How well do grasps hold? For each grasp of the file, and each set of wrenches Q that it asks about: d, the largest multiple of Q that the
+contacts can resist, as a bracket [lower, upper]; what is hardest to resist, and which contacts limit it.
+
+  --csv          one line for every reference, and nothing else on the standard output
+  --plot DIR     a picture for every reference: DIR/ID_REF.svg
+  --relative R   the tolerance where Q is a ball or an ellipsoid, 1e-4 otherwise; polytopes and segments are solved to 1e-10
+  --normalize    make all normals and tangents unit vectors (in the file: "normalize": true)
+  --table1       the paper's Table I beside ours; needs no file
+
+The least that a file must say, a pinch of a block by two soft fingertips (normals n point into the object):
+
+  {"contacts": [{"p": [-0.03, 0, 0], "n": [ 1, 0, 0], "mu": 0.5, "mus": 0.01},
+                {"p": [ 0.03, 0, 0], "n": [-1, 0, 0], "mu": 0.5, "mus": 0.01}]}
+
+More of it: several grasps as {"instances": [...]} or [...].
+  a grasp     "id", "torque_scale" (L: moments are divided by it; 1), "reference" (moments are about this point; the origin), "normalize",
+              "length_unit_m", "refs"
+  a contact   "p", "n"; "o", "t" (tangents, n = o x t); "mu" (friction), "mus" (spin friction, a length), "type" (soft, hard, frictionless);
+              "force_cap" (largest normal force; 1); "finger" (a name); "J" (4 rows: motion along n, o, t and turn about n, per joint),
+              "joints" (names), "torque_limits" (one a joint, null: none; contacts of the same finger share them)
+  a ref       "set" (W: all that friction allows; Wa: what joints generate), "norm" (L1: contacts share one force; Linf: each has its own),
+              "Q", and, if known, "d" with "tol"
+  Q           {"type": "ball", "radius"}, {"type": "ellipsoid", "semi_axes"}, {"type": "box", "half_widths"}, {"type": "cross_polytope", "half_axes"},
+              {"type": "segment", "wrench"}: six numbers, forces first; or fewer along the rows of "S" (or the columns of the ref's "R")
+
+Any other field is an error; a name that begins with _ is a note. Without "refs" a grasp is asked for the unit ball."#;
 
 /// What the command line asks for.
 #[derive(Debug, PartialEq)]
@@ -46,19 +73,21 @@ struct Request {
     file: Option<String>,
     csv: bool,
     table1: bool,
+    normalize: bool,
     plot: Option<PathBuf>,
     relative: f64,
 }
 
 impl Request {
     fn parse(arguments: impl Iterator<Item = String>) -> Result<Self, Trouble> {
-        let mut request = Self { file: None, csv: false, table1: false, plot: None, relative: 1e-4 };
+        let mut request = Self { file: None, csv: false, table1: false, normalize: false, plot: None, relative: 1e-4 };
         let mut arguments = arguments;
         while let Some(argument) = arguments.next() {
             let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
             match argument.as_str() {
                 "--csv" => request.csv = true,
                 "--table1" => request.table1 = true,
+                "--normalize" => request.normalize = true,
                 "--plot" => request.plot = Some(value()?.into()),
                 "--relative" => {
                     let text = value()?;
@@ -78,12 +107,33 @@ impl Request {
     }
 }
 
-/// The queries of a grasp that comes without.
-fn usual_queries() -> Result<Vec<Reference>, Trouble> {
-    let kinds = [Set::Passive, Set::Active].into_iter().flat_map(|set| [(set, Norm::L1), (set, Norm::LInf)]);
+/// The queries of a grasp that comes without: W^a where joints make forces.
+fn usual_queries(grasp: &Grasp) -> Result<Vec<Reference>, Trouble> {
+    let actuated = grasp.contacts.iter().any(|c| c.contact.jacobian.is_some());
+    let sets: &[Set] = if actuated { &[Set::Passive, Set::Active] } else { &[Set::Passive] };
+    let kinds = sets.iter().flat_map(|&set| [(set, Norm::L1), (set, Norm::LInf)]);
     kinds
         .map(|(set, norm)| Ok(Reference { set, norm, q: Q::new(Shape::Ball(1.0), None)?, d: None, tolerance: 0.0 }))
         .collect()
+}
+
+/// How far a long run has come, on the standard error; at most once in two seconds, and nothing of a short one.
+struct Progress {
+    all: usize,
+    last: Instant,
+}
+
+impl Progress {
+    fn new(all: usize) -> Self {
+        Self { all, last: Instant::now() }
+    }
+
+    fn tell(&mut self, done: usize, id: &str) {
+        if self.last.elapsed() > Duration::from_secs(2) {
+            self.last = Instant::now();
+            eprintln!("{done} of {} grasps done; now {id}", self.all);
+        }
+    }
 }
 
 /// Answers for all of the grasps.
@@ -94,10 +144,13 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
         writeln!(out, "{}", csv::HEADER).map_err(written)?;
     }
     let (mut known, mut inside) = (0, 0);
-    for grasp in &mut grasps {
+    let mut progress = Progress::new(grasps.len());
+    for (done, grasp) in grasps.iter_mut().enumerate() {
+        grasp.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        progress.tell(done, &grasp.id);
         let sets = Sets::of_grasp(grasp)?;
         if grasp.queries.is_empty() && !request.csv {
-            grasp.queries = usual_queries()?;
+            grasp.queries = usual_queries(grasp)?;
         }
         if !request.csv {
             table::begin(out, grasp, &sets).map_err(written)?;
@@ -111,7 +164,7 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
             }
             match request.csv {
                 true => csv::row(out, grasp, i, &found),
-                false => table::row(out, grasp, &sets, i, q, &found),
+                false => table::row(out, &sets, i, q, &found),
             }
             .map_err(written)?;
             if let Some(folder) = &request.plot {
@@ -146,14 +199,14 @@ fn run(request: &Request) -> Result<(), Trouble> {
     if let Some(file) = &request.file {
         let named = |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{file}: {trouble}") };
         let text = std::fs::read_to_string(file).map_err(|e| named(e.to_string()))?;
-        input::read(&text).and_then(|grasps| report(request, grasps, &mut out)).map_err(named)?;
+        input::read(&text, request.normalize).and_then(|grasps| report(request, grasps, &mut out)).map_err(named)?;
     }
     out.flush().map_err(written)
 }
 
 fn main() -> ExitCode {
-    if std::env::args().any(|argument| argument == "--help") {
-        println!("{USAGE}");
+    if std::env::args().skip(1).any(|argument| argument == "--help" || argument == "-h") {
+        println!("{USAGE}\n{HELP}");
         return ExitCode::SUCCESS;
     }
     let request = match Request::parse(std::env::args().skip(1)) {

@@ -11,7 +11,7 @@ use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 use crate::Trouble;
 use crate::gauges::Q;
 use crate::input::Set;
-use crate::sets::Wrenches;
+use crate::sets::{Part, Wrenches, value};
 
 /// Facets and vertices of the workspace.
 pub type Memory = Workspace<f64, 6, 1024, 4096>;
@@ -48,7 +48,7 @@ fn smooth(relative: f64) -> Options<f64, 6> {
 
 /// A set, where it is measured, and by what.
 struct Query<'a> {
-    set: WrenchSet<'a, f64>,
+    set: WrenchSet<'a, f64, Part>,
     gauge: Box<dyn Gauge<f64, 6> + 'a>,
     /// The end of the segment, if Q is one.
     end: Option<Vector<f64, 6>>,
@@ -109,7 +109,7 @@ impl Query<'_> {
                 let (lower, upper) = ((s + rest.lower).next_down(), (s + rest.upper).next_up().min(best.upper));
                 return Answer { lower, upper, support: rest.support + end * s, ..rest };
             }
-            let upper = (self.set.value(&rest.direction) + self.set.error()) / along;
+            let upper = (value(&self.set, &rest.direction) + self.set.error()) / along;
             if rest.upper < 0.0 && along > 0.0 && upper < best.upper {
                 best =
                     Answer { upper, direction: rest.direction, support: rest.support + end * s, gauge: along, ..best };
@@ -133,7 +133,7 @@ pub fn solve(
 ) -> Result<Found, Trouble> {
     let within = wrenches.holds(set, q);
     let end = q.segment().map(|end| if within { wrenches.projected(&end) } else { end });
-    let set = WrenchSet::new(&wrenches.primitives, norm);
+    let set = WrenchSet::new(&wrenches.parts, norm);
     let options = match q.is_polytope() {
         true => Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() },
         false => smooth(relative),
@@ -161,7 +161,7 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
     if !wrenches.contains(v) {
         return Some(0.0);
     }
-    let (set, gauge) = (WrenchSet::new(&wrenches.primitives, norm), Box::new(Segment::new(*v).ok()?));
+    let (set, gauge) = (WrenchSet::new(&wrenches.parts, norm), Box::new(Segment::new(*v).ok()?));
     let options = Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: 200, ..Options::default() };
     let query = Query { set, gauge, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
     let upper = query.answer(solver).upper.max(0.0);
@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn the_fixtures_references() {
         let mut rows = Vec::new();
-        for grasp in input::read(FIXTURE).unwrap() {
+        for grasp in input::read(FIXTURE, false).unwrap() {
             let sets = Sets::of_grasp(&grasp).unwrap();
             for (i, query) in grasp.queries.iter().enumerate() {
                 let Reference { set, norm, q, d, .. } = query;
@@ -214,6 +214,46 @@ mod tests {
             }
         }
         assert_eq!(rows.iter().filter(|&&c| c == b'\n').count(), 24);
+    }
+
+    /// What a file says of caps, torque limits, torque scale and reference point is in the answer; each has a closed form.
+    #[test]
+    fn caps_limits_and_frames_take_part() {
+        let pinch = |of_grasp: &str, of_contact: &str| {
+            let touch = |x: i32| {
+                let jacobian = r#""J": [[1], [0], [0], [0]]"#;
+                format!(r#"{{"p": [{x}, 0, 0], "n": [{}, 0, 0], "mu": 0.5, "mus": 0.2, {jacobian}{of_contact}}}"#, -x)
+            };
+            let text = format!(r#"{{"contacts": [{}, {}]{of_grasp}}}"#, touch(-1), touch(1));
+            Sets::of_grasp(&input::read(&text, false).unwrap()[0]).unwrap()
+        };
+        let (push, spin) = ([1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+        for (of_grasp, of_contact, wrench, d) in [
+            ("", "", push, 1.0),
+            ("", r#", "force_cap": 3"#, push, 3.0),
+            ("", r#", "torque_limits": [0.25]"#, push, 0.25),
+            ("", r#", "torque_limits": [null]"#, push, 1.0),
+            ("", r#", "torque_limits": [2], "force_cap": 3"#, push, 2.0),
+            ("", "", spin, 0.4),
+            (r#", "torque_scale": 0.5"#, "", spin, 0.8),
+            (r#", "L": 2"#, r#", "torque_limits": [0.5]"#, spin, 0.1),
+        ] {
+            let sets = pinch(of_grasp, of_contact);
+            let q = Q::new(Shape::Segment(wrench.to_vec()), None).unwrap();
+            let found = ask(&sets, Set::Passive, Norm::LInf, &q).answer;
+            let what = format!("{of_grasp}{of_contact}: {d} in {} {}", found.lower, found.upper);
+            assert!((found.lower - d).abs() < 1e-6 && (found.upper - d).abs() < 1e-6, "{what}");
+        }
+        let moved = r#"{"reference": [1, 0, 0], "contacts": [{"p": [0, 0, 1], "n": [0, 0, -1]}]}"#;
+        let sets = Sets::of_grasp(&input::read(moved, false).unwrap()[0]).unwrap();
+        let q = Q::new(Shape::Segment(vec![0.0, 0.0, -1.0, 0.0, -1.0, 0.0]), None).unwrap();
+        let found = ask(&sets, Set::Passive, Norm::L1, &q).answer;
+        assert!((found.lower - 1.0).abs() < 1e-9 && (found.upper - 1.0).abs() < 1e-9, "{}", found.upper);
+        // Two contacts of one finger state other limits than each other.
+        let text = r#"{"contacts": [{"p": [0, 0, 1], "n": [0, 0, -1], "finger": "a", "J": [[1], [0], [0], [0]], "torque_limits": [1]},
+                                    {"p": [1, 0, 1], "n": [0, 0, -1], "finger": "a", "J": [[1], [0], [0], [0]], "torque_limits": [2]}]}"#;
+        let told = Sets::of_grasp(&input::read(text, false).unwrap()[0]).err().unwrap();
+        assert!(told.starts_with("grasp 0, contact 1, torque_limits: are not those"), "{told}");
     }
 
     /// Planar fingers in a plane that is no coordinate plane, with Jacobians known to 1e-11: W^a has three dimensions, and the value of

@@ -78,7 +78,7 @@ pub fn draw(file: &Path, title: &str, scene: &Scene, solver: &mut Solver<'_, f64
     let planes = planes(&scene.found.weakest);
     let outlines: Vec<[Outline; 2]> = planes.iter().map(|plane| sections(solver, scene, plane)).collect();
     // Forces have one scale, moments another.
-    let whole = WrenchSet::new(&scene.wrenches.primitives, scene.reference.norm).extent();
+    let whole = WrenchSet::new(&scene.wrenches.parts, scene.reference.norm).extent();
     let scales = [extent(&outlines[..3], whole), extent(&outlines[3..6], whole), extent(&outlines[6..], whole)];
     let root = SVGBackend::new(file, SIZE).into_drawing_area();
     root.fill(&WHITE)?;

@@ -147,7 +147,7 @@ fn shade(color: RGBColor, light: f64) -> RGBColor {
 }
 
 pub fn draw(file: &Path, title: &str, scene: &Scene, basis: &SMatrix<f64, 6, 3>) -> Result<(), Box<dyn Error>> {
-    let set = WrenchSet::new(&scene.wrenches.primitives, scene.reference.norm);
+    let set = WrenchSet::new(&scene.wrenches.parts, scene.reference.norm);
     let outer = Hull::of(|u| set.support(&(basis * u)).ok().map(|p| basis.tr_mul(&p)));
     let d = scene.d();
     let inner = Hull::of(|u| scene.reference.q.farthest(&(basis * u)).map(|q| basis.tr_mul(&q) * d));

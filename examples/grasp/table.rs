@@ -14,11 +14,12 @@ use crate::words;
 /// Contacts, fingers and dimensions.
 pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> {
     let unit = grasp.length_unit.map_or(String::new(), |unit| format!("; lengths in units of {unit:.4} m"));
-    let contacts = if let [_] = grasp.hand.as_slice() { "contact" } else { "contacts" };
-    writeln!(out, "{}: {} {contacts}{unit}", grasp.id, grasp.hand.len())?;
-    let width = grasp.names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
+    let contacts = if let [_] = grasp.contacts.as_slice() { "contact" } else { "contacts" };
+    writeln!(out, "{}: {} {contacts}{unit}{}", grasp.id, grasp.contacts.len(), frame(grasp))?;
+    let width = grasp.contacts.iter().map(|c| c.name.chars().count()).max().unwrap_or(0).max(7);
     writeln!(out, "  {:<width$}  {:<24}  {:>6}  {:>4}  active forces", "contact", "friction", "joints", "rank")?;
-    for ((name, c), forces) in grasp.names.iter().zip(&grasp.hand).zip(&sets.fingers) {
+    for (touch, forces) in grasp.contacts.iter().zip(&sets.fingers) {
+        let (name, c) = (&touch.name, &touch.contact);
         let friction = match c.contact.friction() {
             Friction::Frictionless => "none".to_string(),
             Friction::Hard { mu } => format!("hard, mu {mu:.4}"),
@@ -34,7 +35,9 @@ pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> 
             Some(Some(2)) => "U^a of dimension 2",
             Some(Some(_)) => "all that friction allows",
         };
-        writeln!(out, "  {name:<width$}  {friction:<24}  {joints:>6}  {rank:>4}  {size}")?;
+        let cap = if c.contact.force_cap() == 1.0 { String::new() } else { format!(", cap {}", c.contact.force_cap()) };
+        let limits = touch.limits.as_ref().map_or(String::new(), |limits| format!(", torque limits {limits:?}"));
+        writeln!(out, "  {name:<width$}  {friction:<24}  {joints:>6}  {rank:>4}  {size}{cap}{limits}")?;
     }
     let [passive, active] = [Set::Passive, Set::Active].map(|set| sets.get(set).dimension());
     writeln!(out, "  W has dimension {passive}, W^a {active}")?;
@@ -44,6 +47,13 @@ pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> 
         out,
         "  ref  {set:<3} {norm:<4} {dim:>3}  {lower:>14} {upper:>14}  {outcome:<10} {plan:<9} {points:>7} {ms:>9}  {reference:>14}  {inside:<6}  Q"
     )
+}
+
+/// Reference point and torque scale, where they are not the usual ones.
+fn frame(grasp: &Grasp) -> String {
+    let ([x, y, z], scale) = ((*grasp.frame.reference()).into(), grasp.frame.torque_scale());
+    let about = if [x, y, z] == [0.0; 3] { String::new() } else { format!("; moments about ({x}, {y}, {z})") };
+    if scale == 1.0 { about } else { format!("{about}; torque scale {scale}") }
 }
 
 fn plan_name(plan: Plan) -> &'static str {
@@ -81,14 +91,7 @@ pub fn contains(found: &Found, query: &Reference) -> Option<bool> {
 }
 
 /// One query and its answer: a line of numbers and one of words.
-pub fn row(
-    out: &mut dyn Write,
-    grasp: &Grasp,
-    sets: &Sets,
-    number: usize,
-    query: &Reference,
-    found: &Found,
-) -> io::Result<()> {
+pub fn row(out: &mut dyn Write, sets: &Sets, number: usize, query: &Reference, found: &Found) -> io::Result<()> {
     let answer = &found.answer;
     let inside = match contains(found, query) {
         None => "-",
@@ -110,8 +113,9 @@ pub fn row(
         query.d.map_or("-".into(), bound),
         query.q.label(),
     )?;
-    let set = WrenchSet::new(&sets.get(query.set).primitives, query.norm);
-    let worst = words::worst(&grasp.names, &set, &answer.direction, 1e-3);
+    let wrenches = sets.get(query.set);
+    let set = WrenchSet::new(&wrenches.parts, query.norm);
+    let worst = words::worst(&wrenches.names, &set, &answer.direction, 1e-3);
     let hardest = words::hardest(&found.weakest);
     let least = match answer.outcome {
         Outcome::Touching | Outcome::Separated | Outcome::Degenerate => "cannot resist",

@@ -7,6 +7,8 @@ use qdist::Vector;
 use qdist::grasp::{Norm, WrenchSet};
 use qdist::support::Support;
 
+use crate::sets::Part;
+
 /// Within 10 degrees of an axis, or of a plane of two.
 const ALONG: f64 = 0.985;
 /// A part that is less than this of the whole is not worth a word.
@@ -100,8 +102,8 @@ pub fn hardest(weakest: &Vector<f64, 6>) -> String {
 /// The contacts whose force caps limit d, with their share h_i(u) / h(u) of it at the weakest direction u: the relative growth of d per relative
 /// growth of the cap, where u is unique. Under L1 the strongest contact alone has h(u). Contacts as strong as the strongest, to `tolerance`, are
 /// named with it: under L1, d grows only with all of them together.
-pub fn worst(names: &[String], set: &WrenchSet<f64>, u: &Vector<f64, 6>, tolerance: f64) -> String {
-    let heights: Vec<f64> = set.contributions().iter().map(|p| p.value(u).max(0.0)).collect();
+pub fn worst(names: &[String], set: &WrenchSet<f64, Part>, u: &Vector<f64, 6>, tolerance: f64) -> String {
+    let heights: Vec<f64> = set.contributions().iter().map(|part| part.value(u)).collect();
     let most = heights.iter().copied().fold(0.0, f64::max);
     if !(most > 4.0 * set.error() * u.norm()) {
         return "no contact resists it".into();
@@ -159,7 +161,7 @@ mod tests {
         let x = Vector::<f64, 6>::x();
         let names = ["a", "b", "c"].map(String::from);
         let tell = |forces: [f64; 3], norm| {
-            let primitives = forces.map(|f| Primitive::new(x * f, SMatrix::zeros()).unwrap());
+            let primitives = forces.map(|f| Part::Contact(Box::new(Primitive::new(x * f, SMatrix::zeros()).unwrap())));
             worst(&names, &WrenchSet::new(&primitives, norm), &x, 1e-3)
         };
         assert_eq!(tell([1.0, 2.0, -1.0], Norm::L1), "limited by contact b");

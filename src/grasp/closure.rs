@@ -1,31 +1,54 @@
-//! Does the grasp hold against any wrench? Yes or no, with a proof.
+//! Does the grasp hold against any wrench? Yes or no, with a proof, or neither.
 //!
 //! A grasp is *force-closed* when contact forces within friction exert every wrench (paper, Section II), that is, when the origin lies
-//! in the interior of W. Both answers have a certificate: a ball in W, or a direction u with h_W(u) = 0, along which no contact pushes.
-//! The query ends as soon as it has one of them, usually after a dozen support calls. Neither norm nor force caps matter, but for caps of 0.
+//! in the interior of W. Both answers have a certificate. Neither norm nor force caps matter, but for caps of 0; nor does the torque scale.
+//!
+//! * *Closed*: a ball in W. It is there with all rounding taken into account: d > 0, for the exact numbers of the contacts.
+//! * *Open*: a direction u with h_W(u) = 0, along which no contact pushes. Numbers of a floating-point format have such a direction
+//!   by luck only: the line between two fingertips, say, is rounded. So open means that h_W(u), as it is computed, is no more than half of what its
+//!   own rounding may be, E(u) = sum of |u_i| e_i with the e_i of [`Support::errors`]: some 20 to 60 roundoffs of the wrenches that the terms of h_W(u) are made
+//!   of, row by row. Numbers of contacts that differ by as much make an open grasp, and no bracket of d in this format tells it from 0.
+//! * *Undecided*: d is too small for the one, too large for the other, or the query was cut short. Of sizes between 1/2 and about 5
+//!   times E(u), a grasp may be that.
+//!
+//! **Coordinates.** A linear map of W leaves closure as it is. The query divides each coordinate by a power of two near its error e_i: moments
+//! of a thousand or a thousandth of the forces' size then count like forces, and the small ones are not drowned in the rounding of the
+//! large ones.
+//!
+//! **Thresholds.** A query with a threshold of some margins ends at the first direction that is a candidate for open, or the first ball above it. The
+//! candidate is judged by its height, summed in twice the precision. If it is none, the threshold is lowered; at last there is none, and rounding
+//! ends the query.
 
 use crate::Outcome;
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Accumulator, Real, Vector, norm, unit};
 use crate::solver::Solver;
-use crate::support::Support;
+use crate::support::{Failure, Support};
+
+/// Thresholds that are tried one after the other, in halves of a margin; the last ends at the first ball in W.
+const THRESHOLDS: [usize; 3] = [8, 3, 0];
+
+/// Points that the last of them may add, when the caller sets no lower limit: what is not decided then is next to undecidable.
+const MOST: u32 = 200;
 
 /// What was found out about force closure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Closure<T> {
-    /// The grasp is force-closed: W contains the ball of this radius, above 0, around the origin. It proves closure; d can be much larger.
+    /// The grasp is certainly force-closed: W contains the ball of this radius, above 0, around the origin. It proves closure; d can be much larger.
     Closed {
         /// A lower bound of d for the unit ball.
         radius: T,
     },
-    /// It is not, or by no more than rounding can tell: no contact forces exert a wrench w with `direction`.w > 0 beyond rounding. The
-    /// external wrench that the grasp cannot resist at all is `-direction`.
+    /// It is not, as far as the numbers of its contacts tell: along `direction` no contact forces exert more than their own rounding. d cannot be told
+    /// from 0. The external wrench that the grasp does not resist is `-direction`.
     Open {
-        /// A unit vector that separates the grasp's wrenches from the others.
+        /// A unit vector u that separates the grasp's wrenches from the others: h_W(u) is 0, or as small as its rounding (module `closure` has
+        /// the number).
         direction: Vector<T, 6>,
     },
-    /// Memory, iterations, rounding or a failing support function ended the query before either was certain.
+    /// Neither is proved: d is above 0 by little more than rounding, if it is; or memory, iterations, the deadline or a failing support function
+    /// ended the query.
     Undecided {
         /// The weakest direction so far.
         direction: Vector<T, 6>,
@@ -37,16 +60,21 @@ impl<T: Real> Closure<T> {
     pub fn is_closed(&self) -> bool {
         matches!(self, Self::Closed { .. })
     }
+
+    /// Is it open, as far as the numbers of its contacts tell? (Neither this nor [`is_closed`](Self::is_closed): undecided.)
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Open { .. })
+    }
 }
 
 impl<T: Real> Solver<'_, T, 6> {
     /// Is the origin in the interior of the wrench set `w`?
     ///
-    /// Ends at the first ball in W, or direction along which W has no extent, that is larger, or not larger, than rounding: 64 roundoffs
-    /// of W's size and four times what [`Support::error`] says; four times as much where arithmetic has no ball above that. Of `options`,
-    /// `max_iterations` and `guess` count.
+    /// Ends at the first ball in W, or the first direction along which W has no extent; what rounding has to do with it is told at [`Closure`]. Of
+    /// `options`, `max_iterations` and `guess` count.
     ///
-    /// Cost: that of the start and a few points; some 10 to 100 support calls, tens of microseconds on a desktop machine.
+    /// Cost: that of the start and a few points; some 10 to 100 support calls, tens of microseconds on a desktop machine. Grasps that rounding
+    /// leaves undecided take three such queries, and the last of them up to 200 points.
     ///
     /// ```
     /// use qdist::{Options, Vector, Workspace};
@@ -81,22 +109,116 @@ impl<T: Real> Solver<'_, T, 6> {
         options: &Options<T, 6>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Closure<T> {
-        let rounding = (T::count(4) * w.error() + T::count(64) * T::ROUNDOFF * w.extent()).at_least(T::TINY);
-        let mut ask = |threshold: T| {
-            self.solve_until(w, &Ball::unit(), &Options { threshold: Some(threshold), ..*options }, interrupt)
-        };
-        let mut answer = ask(rounding);
-        if answer.outcome == Outcome::Precision && !(answer.lower > T::zero()) {
-            answer = ask(T::count(4) * rounding);
-        }
-        let direction = answer.direction;
-        match answer.outcome {
-            Outcome::SupportFailed => Closure::Undecided { direction },
-            _ if answer.lower > T::zero() => Closure::Closed { radius: answer.lower },
-            Outcome::Below | Outcome::Separated | Outcome::Touching | Outcome::Degenerate => {
-                Closure::Open { direction }
+        let even = Even::new(w);
+        let margin = even.error() + T::count(16) * T::ROUNDOFF * even.extent();
+        let mut guess = options.guess.map(|u| even.direction_in(&u));
+        let mut weakest = Vector::zeros();
+        for halves in THRESHOLDS {
+            let threshold = Some((margin * T::count(halves) / T::count(2)).at_least(T::TINY));
+            let limit = match (options.max_iterations, halves) {
+                (0, 0) => MOST,
+                (own, 0) => own.min(MOST),
+                (own, _) => own,
+            };
+            let options = Options { threshold, guess, max_iterations: limit, ..*options };
+            let answer = self.solve_until(&even, &Ball::unit(), &options, interrupt);
+            weakest = even.direction_out(&answer.direction);
+            let radius = answer.lower * even.least();
+            if radius >= T::TINY {
+                return Closure::Closed { radius };
             }
-            _ => Closure::Undecided { direction },
+            if answer.outcome == Outcome::SupportFailed {
+                break;
+            }
+            if answer.upper < T::zero() || even.is_nothing(&answer.direction, &answer.support) {
+                return Closure::Open { direction: weakest };
+            }
+            if matches!(answer.outcome, Outcome::Interrupted | Outcome::Iterations | Outcome::Capacity) {
+                break;
+            }
+            guess = Some(answer.direction);
         }
+        Closure::Undecided { direction: weakest }
+    }
+}
+
+/// A set in coordinates that are all known equally well: s_i x_i, with powers of two s_i >= 1.
+struct Even<'a, T> {
+    set: &'a dyn Support<T, 6>,
+    scales: Vector<T, 6>,
+    /// Of the coordinates s_i x_i.
+    errors: Vector<T, 6>,
+    extents: Vector<T, 6>,
+}
+
+impl<'a, T: Real> Even<'a, T> {
+    fn new(set: &'a dyn Support<T, 6>) -> Self {
+        let errors = set.errors();
+        let largest = errors.iter().fold(T::zero(), |m, &e| m.at_least(e));
+        let least = T::ROUNDOFF * T::ROUNDOFF;
+        // A ball term stays one only where all are equal; what is no number ends the query as it is.
+        let apart = largest > T::zero() && largest.finite() && !(set.radius() > T::zero());
+        let scale = |e: T| if apart { T::one() / (e / largest).at_least(least).power_of_two() } else { T::one() };
+        let scales = errors.map(scale);
+        Even { set, scales, errors: errors.component_mul(&scales), extents: set.extents().component_mul(&scales) }
+    }
+
+    /// A ball of radius 1 contains one of this radius in the coordinates of the set.
+    fn least(&self) -> T {
+        T::one() / self.scales.iter().fold(T::one(), |m, &s| m.at_least(s))
+    }
+
+    fn direction_in(&self, u: &Vector<T, 6>) -> Vector<T, 6> {
+        u.component_div(&self.scales)
+    }
+
+    fn direction_out(&self, u: &Vector<T, 6>) -> Vector<T, 6> {
+        let out = u.component_mul(&self.scales);
+        if out.iter().any(|&x| x != T::zero()) { unit(&out) } else { out }
+    }
+
+    /// Is the height of this support point along u no more than half of what its rounding may be?
+    fn is_nothing(&self, u: &Vector<T, 6>, point: &Vector<T, 6>) -> bool {
+        let mut height = Accumulator::new(T::zero());
+        let mut error = T::zero();
+        for i in 0..6 {
+            height.add_product(u[i], point[i]);
+            error += u[i].abs() * self.errors[i];
+        }
+        // A set that does not know its extent has no error either: then the default for the point that it gave.
+        let known = self.set.extent() > T::zero();
+        let error = if known { error } else { error.at_least(T::count(96) * T::ROUNDOFF * norm(point)) };
+        u.iter().any(|&x| x != T::zero()) && height.value() * T::count(2) <= error
+    }
+}
+
+impl<T: Real> Support<T, 6> for Even<'_, T> {
+    fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
+        Ok(self.set.support(&u.component_mul(&self.scales))?.component_mul(&self.scales))
+    }
+    fn exhaustive(&self, u: &Vector<T, 6>) -> Result<(Vector<T, 6>, Vector<T, 6>), Failure> {
+        let (point, witness) = self.set.exhaustive(&u.component_mul(&self.scales))?;
+        Ok((point.component_mul(&self.scales), witness.component_mul(&self.scales)))
+    }
+    fn has_shortcuts(&self) -> bool {
+        self.set.has_shortcuts()
+    }
+    fn radius(&self) -> T {
+        self.set.radius()
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.set.mirrored(signs)
+    }
+    fn extent(&self) -> T {
+        norm(&self.extents) * (T::one() + T::count(16) * T::ROUNDOFF)
+    }
+    fn error(&self) -> T {
+        norm(&self.errors) * (T::one() + T::count(16) * T::ROUNDOFF)
+    }
+    fn errors(&self) -> Vector<T, 6> {
+        self.errors
+    }
+    fn extents(&self) -> Vector<T, 6> {
+        self.extents
     }
 }

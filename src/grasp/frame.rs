@@ -62,6 +62,19 @@ impl<T: Real> WrenchFrame<T> {
         SMatrix::from_columns(&[column(n), column(o), column(t), Vector::from([zero, zero, zero, n.x, n.y, n.z])])
     }
 
+    /// What the terms of each entry of the contact map add up to in absolute value: its rounding is relative to that.
+    pub(super) fn contact_map_sizes(&self, contact: &Contact<T>) -> SMatrix<T, 6, 4> {
+        let arm = (contact.position() - self.reference).map(|x| x.abs() / self.torque_scale);
+        let ([o, t], n) = (contact.tangents(), contact.normal());
+        let column = |force: &Vector<T, 3>| {
+            let f = force.abs();
+            let [x, y, z] = [arm.y * f.z + arm.z * f.y, arm.z * f.x + arm.x * f.z, arm.x * f.y + arm.y * f.x];
+            Vector::from([f.x, f.y, f.z, x, y, z])
+        };
+        let (zero, f) = (T::zero(), n.abs());
+        SMatrix::from_columns(&[column(n), column(o), column(t), Vector::from([zero, zero, zero, f.x, f.y, f.z])])
+    }
+
     /// The wrench of a force on the object and a moment about the reference point, in the units of force and of force times position.
     pub fn wrench(&self, force: &Vector<T, 3>, moment: &Vector<T, 3>) -> Vector<T, 6> {
         let scaled = moment.map(|x| x / self.torque_scale);

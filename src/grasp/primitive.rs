@@ -18,7 +18,8 @@ use crate::support::{Failure, Support};
 /// `error`, with E = |center| + |disc| (Frobenius): 6 roundoffs for w and thus twice 6 for the choice of the point, 5
 /// for the unit vector, 4 for center + disc x make `24 u E`. A primitive made of a contact counts the roundings of the
 /// contact map, too, 14 for the map and its product with the force, `16 u |G| |f|`: it keeps the promise for the
-/// contact's exact numbers.
+/// contact's exact numbers. `errors` are the same row by row: each rounding is one of a sum of products, and relative to
+/// their sizes. So forces are as exact as they are beside moments of any size.
 ///
 /// ```
 /// use qdist::{Vector, grasp::{Contact, ContactError, Friction, Primitive, WrenchFrame}, support::Support};
@@ -35,8 +36,8 @@ use crate::support::{Failure, Support};
 pub struct Primitive<T> {
     center: Vector<T, 6>,
     disc: SMatrix<T, 6, 3>,
-    /// Bound of what rounding has moved center + disc x by, when they were computed.
-    rounding: T,
+    /// Bounds of what rounding has moved each coordinate of center + disc x by, when they were computed.
+    rounding: Vector<T, 6>,
     /// 0 or 1.
     empty: u32,
 }
@@ -44,7 +45,7 @@ pub struct Primitive<T> {
 impl<T: Real> Primitive<T> {
     /// The empty set: a contact that can exert nothing. In a [`WrenchSet`](super::WrenchSet) it is as if it were not there.
     pub fn empty() -> Self {
-        Self { center: Vector::zeros(), disc: SMatrix::zeros(), rounding: T::zero(), empty: 1 }
+        Self { center: Vector::zeros(), disc: SMatrix::zeros(), rounding: Vector::zeros(), empty: 1 }
     }
 
     /// { center + disc x : |x| <= 1 } for any wrenches: a contact model of your own. A disc of zeros is a point.
@@ -55,7 +56,7 @@ impl<T: Real> Primitive<T> {
         if !(usable(center.iter()) && usable(disc.iter())) {
             return Err(ContactError::Wrench);
         }
-        Ok(Self { center, disc, rounding: T::zero(), empty: 0 })
+        Ok(Self { center, disc, rounding: Vector::zeros(), empty: 0 })
     }
 
     /// All wrenches of the contact with its full normal force, whoever generates them: G(U) with the U of eq. 7 times
@@ -79,16 +80,11 @@ impl<T: Real> Primitive<T> {
     ) -> Result<Self, ContactError> {
         let (map, cap) = (frame.contact_map(contact), contact.force_cap());
         let image = Self::new(map * center * cap, map * disc * cap)?;
-        // Only the moments of f1 to f3 have an arm: a large spin moment costs nothing of a long one.
-        let (mut size, mut spin) = (T::zero(), T::zero());
-        for &[a, b, c, d] in center.data.0.iter().chain(&disc.data.0) {
-            size += norm(&Vector::from([a, b, c]));
-            spin += d.abs();
-        }
-        let [.., normal] = map.data.0;
-        let reach = frobenius(&map) * size + norm(&Vector::from(normal)) * spin;
-        let rounding = T::count(16) * T::ROUNDOFF * reach * cap;
-        if usable([rounding].iter()) { Ok(Self { rounding, ..image }) } else { Err(ContactError::Wrench) }
+        // What the terms of each coordinate add up to, whatever their signs.
+        let forces = disc.column_iter().fold(center.abs(), |sum, column| sum + column.abs());
+        let sizes = frame.contact_map_sizes(contact) * forces;
+        let rounding = sizes * (T::count(16) * T::ROUNDOFF * cap);
+        if usable(rounding.iter()) { Ok(Self { rounding, ..image }) } else { Err(ContactError::Wrench) }
     }
 
     /// The center: of a contact without friction the only wrench. Zero for the empty set.
@@ -134,6 +130,11 @@ impl<T: Real> Primitive<T> {
     fn size(&self) -> T {
         norm(&self.center) + frobenius(&self.disc)
     }
+
+    /// The same row by row: no wrench has a larger coordinate.
+    fn sizes(&self) -> Vector<T, 6> {
+        Vector::from_fn(|i, _| self.center[i].abs() + norm(&self.disc.row(i).transpose()))
+    }
 }
 
 struct Farthest<T> {
@@ -160,11 +161,17 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
         let squared = self.center.dot(&self.center) + cross + cross + gram.trace().at_most(largest);
         // Squares may have left the range of the format.
         let length = if squared > T::SAFE_SQUARE { squared.root().at_most(self.size()) } else { self.size() };
-        length * (T::one() + T::count(32) * T::ROUNDOFF) + self.rounding
+        length * (T::one() + T::count(32) * T::ROUNDOFF) + norm(&self.rounding)
     }
     fn error(&self) -> T {
         // TINY: products that leave the range of the format.
-        self.rounding + T::count(24) * T::ROUNDOFF * self.size() + T::TINY
+        norm(&self.rounding) + T::count(24) * T::ROUNDOFF * self.size() + T::TINY
+    }
+    fn errors(&self) -> Vector<T, 6> {
+        (self.rounding + self.sizes() * (T::count(24) * T::ROUNDOFF)).add_scalar(T::TINY)
+    }
+    fn extents(&self) -> Vector<T, 6> {
+        self.sizes() * (T::one() + T::count(8) * T::ROUNDOFF) + self.rounding
     }
 }
 

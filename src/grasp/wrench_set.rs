@@ -47,7 +47,7 @@ pub enum Norm {
 ///
 /// `error`, with e_i the error of contribution i: a computed value h_i is within e_i of the true one. L1 picks one by two such
 /// values, `3 max e_i` with the point's own. LInf decides by signs, which may cost e_i where it is wrong, and adds m
-/// points, one roundoff u of the sum for each: `2 sum e_i + m u sum |W_i|`.
+/// points, one roundoff u of the sum for each: `2 sum e_i + m u sum |W_i|`. `errors` are the same coordinate by coordinate.
 ///
 /// ```
 /// use qdist::Vector;
@@ -152,6 +152,14 @@ impl<'a, T: Real, C: Contribution<T>> WrenchSet<'a, T, C> {
         })
     }
 
+    /// What contributions have in common: the largest of each coordinate, or the sum.
+    fn gather(&self, sum: &Vector<T, 6>, own: &Vector<T, 6>) -> Vector<T, 6> {
+        match self.norm {
+            Norm::L1 => sum.zip_map(own, |a, b| a.at_least(b)),
+            Norm::LInf => sum + own,
+        }
+    }
+
     /// Half the diagonal of the box that contains the set: opposed contacts cancel in it, not in the sum of extents.
     fn half_diagonal(&self) -> Result<T, Failure> {
         let mut corner = Vector::<T, 6>::zeros();
@@ -191,5 +199,22 @@ impl<T: Real, C: Contribution<T>> Support<T, 6> for WrenchSet<'_, T, C> {
     }
     fn error(&self) -> T {
         self.error
+    }
+    fn errors(&self) -> Vector<T, 6> {
+        let add = |sum: Vector<T, 6>, c: &C| self.gather(&sum, &c.errors());
+        let own = self.contributions.iter().fold(Vector::zeros(), add);
+        match self.norm {
+            Norm::L1 => own * T::count(3),
+            Norm::LInf => {
+                let m = T::count(self.contributions.len());
+                let above = T::one() + (m + T::count(8)) * T::ROUNDOFF;
+                (own * T::count(2) + self.extents() * (m * T::ROUNDOFF)) * above
+            }
+        }
+    }
+    fn extents(&self) -> Vector<T, 6> {
+        let add = |sum: Vector<T, 6>, c: &C| self.gather(&sum, &c.extents());
+        let m = T::count(self.contributions.len());
+        self.contributions.iter().fold(Vector::zeros(), add) * (T::one() + (m + T::count(2)) * T::ROUNDOFF)
     }
 }

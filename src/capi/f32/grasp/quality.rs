@@ -11,7 +11,9 @@ use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, ov
 use super::super::gauges::{CheckedGauge, qdist_gauge_f32};
 use super::super::query::{convert, from_answer, qdist_options_f32, qdist_result_f32};
 use super::super::sets::qdist_set_f32;
+use super::wrenches::behind;
 use crate::grasp::Closure;
+use crate::support::Support;
 
 /// Is a grasp force-closed?
 #[repr(C)]
@@ -23,8 +25,8 @@ pub struct qdist_closure_f32 {
     pub verdict: qdist_closure,
     /// QDIST_CLOSURE_CLOSED: the wrench set contains the ball of this radius, which proves closure; d can be much larger. Else 0.
     pub radius: f32,
-    /// QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w > 0, beyond rounding; the external wrench -u
-    /// cannot be resisted at all. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
+    /// QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w above its own rounding; the external wrench -u
+    /// is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
     pub direction: [f32; 6],
 }
 
@@ -45,7 +47,8 @@ pub struct qdist_best_f32 {
 gaps!(qdist_best_f32, result.callback_code..);
 
 /// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
-/// support function. Tolerances and threshold of the options are not used.
+/// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
+/// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_force_closure_f32(
     solver: *mut qdist_solver,
@@ -56,12 +59,17 @@ pub unsafe extern "C" fn qdist_force_closure_f32(
     let solve = || {
         aligned(closure)?;
         // SAFETY: what the header asks of the caller.
-        let (set, mut solver, options, deadline) = unsafe {
+        let (list, set, mut solver, options, deadline) = unsafe {
             let set = shared(set)?;
             let solver = handle::open::<f32, 6>(solver)?;
             known_size((&raw const (*closure).struct_size).read(), size_of::<qdist_closure_f32>())?;
             let (options, deadline) = convert::<6>(options)?;
-            (set.checked::<6>()?, solver, options, deadline)
+            let checked = set.checked::<6>()?;
+            (behind(set), checked, solver, options, deadline)
+        };
+        let set: &dyn Support<f32, 6> = match &list {
+            Some(list) => list,
+            None => set,
         };
         let found = deadline.during(|interrupt| solver.force_closure_until(set, &options, interrupt));
         let (verdict, radius, direction) = match found {

@@ -4,7 +4,7 @@
 //! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
-use super::super::super::generic::{aligned, array, clear_gaps, flag, gaps, length, put, shared};
+use super::super::super::generic::{aligned, array, clear_gaps, flag, gaps, lengths, put, shared};
 use super::super::super::grasp::{
     QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
 };
@@ -64,8 +64,8 @@ pub struct qdist_primitive_f64 {
     pub center: [f64; 6],
     /// disc[6 * column + row].
     pub disc: [f64; 18],
-    /// How far rounding may have moved them.
-    pub rounding: f64,
+    /// How far rounding may have moved each coordinate of them.
+    pub rounding: [f64; 6],
     /// 1: the contact can exert nothing.
     pub empty: u32,
 }
@@ -136,11 +136,11 @@ impl qdist_primitive_f64 {
     /// The list, with all numbers checked: finite, and as small as those of contacts.
     pub(super) fn checked(list: &[Self]) -> Check<&[Primitive<f64>]> {
         for primitive in list {
-            let numbers = primitive.center.iter().chain(&primitive.disc).chain([&primitive.rounding]);
+            let numbers = primitive.center.iter().chain(&primitive.disc).chain(&primitive.rounding);
             if !usable(numbers) {
                 return Err(QDIST_ERROR_CONTACT_WRENCH);
             }
-            length(primitive.rounding)?;
+            lengths(primitive.rounding)?;
             flag(primitive.empty)?;
         }
         Ok(Self::list(list))

@@ -46,6 +46,20 @@ impl qdist_wrenches_f64 {
     }
 }
 
+/// The list behind a set, if the set is as `qdist_set_wrenches` makes it: the list knows its rounding coordinate by coordinate.
+///
+/// # Safety
+/// What the header asks of the caller for a set that is about to be used.
+pub(super) unsafe fn behind(set: &qdist_set_f64) -> Option<WrenchSet<'_, f64>> {
+    let own: unsafe extern "C" fn(*mut c_void, *const f64, *mut f64) -> i32 = qdist_wrenches_support_f64;
+    if set.exhaustive.is_some() || !set.support.is_some_and(|support| core::ptr::fn_addr_eq(support, own)) {
+        return None;
+    }
+    // SAFETY: the caller's promise: with this function, that is what `user` points to.
+    let list = unsafe { shared(set.user.cast::<qdist_wrenches_f64>().cast_const()).ok()?.checked().ok()? };
+    (set.error == list.error() && set.extent == list.extent() && set.radius == 0.0).then_some(list)
+}
+
 /// Makes a set of a list of primitives. Reads all of them.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_set_wrenches_f64(
