@@ -34,6 +34,28 @@
 //! d_Q(A) >= min over F of (e_F - m) / h_Q(n_F)
 //! ```
 //!
+//! # By direction
+//!
+//! m is that of the worst direction. With |p_i| <= R_i over the points of A, and errors e_i coordinate by coordinate, a height along n is off by no more
+//! than
+//!
+//! ```text
+//! m(n) = sum over i of |n_i| (e_i + (2N + 4) u R_i)
+//! ```
+//!
+//! which for a floor of a kilometre, along its normal, is a millionth of m. The upper bound needs nothing new. For the lower, let v' be the
+//! points of A behind the computed vertices v, and move each v straight to its v'. Every point x of a facet F keeps n_F.x >= e_F - m(n_F) > 0
+//! meanwhile, so no facet crosses the origin, and the surface of the v' winds around it as that of the v did. λQ misses it
+//! when λ h_Q(n_F) < e_F - m(n_F) for all F, and
+//!
+//! ```text
+//! d_Q(A) >= min over F of (e_F - m(n_F)) / h_Q(n_F)
+//! ```
+//!
+//! It costs a pass over the facets, and is asked for where m has left the answer open (module `second_look`).
+//!
+//! # Around the origin
+//!
 //! That the surface winds around the origin is not taken for granted: slivers can fold over. Let c be the centroid of the first
 //! simplex as it was computed, and let every facet F ever made satisfy n.c < e_F by more than (3N + 8) u R, the
 //! rounding of c, of both products and of the length of n.

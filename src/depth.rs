@@ -151,6 +151,18 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
         Ok(corner)
     }
 
+    /// The anchor in the world, computed as in twice the precision: the shape may be far from its frame, and the frame's position undo that.
+    fn origin(&self, anchor: &Anchor<T, N>) -> Vector<T, N> {
+        let Some(center) = &anchor.center else { return self.translation };
+        Vector::from_fn(|i, _| {
+            let mut sum = Accumulator::new(self.translation[i]);
+            for j in 0..N {
+                sum.add_product(self.rotation[(i, j)], center[j]);
+            }
+            sum.value()
+        })
+    }
+
     /// Extents and errors along the axes of the world.
     fn axes(&self, anchor: &Anchor<T, N>) -> Axes<T, N> {
         let (mut extents, mut errors) = (self.shape.extents(), self.shape.errors());
@@ -604,7 +616,7 @@ impl<T: Real, const N: usize> Depth<T, N> {
     fn new(answer: &Answer<T, N>, pair: &Pair<'_, '_, T, N>) -> Self {
         let n = answer.direction;
         let (a, b) = (pair.a, pair.b);
-        let origin = a.translation + pair.on_a.center.map_or(Vector::zeros(), |center| a.rotation * center);
+        let origin = a.origin(&pair.on_a);
         // b = a - (a - b), both from A's anchor.
         let on_a = answer.witness.witness();
         let on_b = on_a - answer.witness.point();
