@@ -7,7 +7,8 @@
 //! depth = min over u of h_A(u) + h_H(-u) = h_A(-n/|n|) + c/|n|
 //! ```
 //!
-//! One call of A's support function answers, whatever A is; A's ball term is added as it is.
+//! One call of A's support function answers, whatever A is (after those that measure A, where it does not state its extent); A's
+//! ball term is added as it is.
 //!
 //! # Rounding
 //!
