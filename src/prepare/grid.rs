@@ -2,9 +2,10 @@
 //!
 //! A hull is built from one question: is p above the plane of a, b, c? In floating point the answer is rounding where the four
 //! points are nearly in a plane, and answers that contradict each other break the hull. So the points are measured from the
-//! first one in units of 2^-60 of the largest coordinate M (rounded down to a power of two): integers of 62 bits, whose
-//! determinant is exact in 192 bits. The hull is that of points displaced by less than 2^-59 M in each coordinate, which is a
-//! sixty-fourth of the roundoff of a coordinate of size M in `f64`, and nothing in `f32`.
+//! first one, along each axis in units of 2^-60 of the largest coordinate M along that axis (rounded down to a power of two): integers of
+//! 62 bits, whose determinant is exact in 192 bits. Stretching the axes does not change which edges a hull has, and plates and needles along the
+//! axes are no thinner than other hulls. The hull is that of points displaced by less than 2^-59 M in each coordinate, which is a
+//! sixty-fourth of the roundoff of a coordinate of size M in `f64`, and nothing in `f32` but for the smallest coordinates.
 
 use crate::scalar::{Real, Vector};
 
@@ -26,17 +27,27 @@ pub(super) fn distance((high, low): Height) -> Height {
 pub(super) struct Grid<'a, T> {
     points: &'a [[T; 3]],
     first: [T; 3],
-    /// 1 / M
-    scale: T,
+    /// 1 / M for each axis.
+    scale: [T; 3],
+    /// 1 / M of the longest axis.
+    whole: T,
 }
 
 impl<'a, T: Real> Grid<'a, T> {
-    /// `None` without points, and where all are equal up to underflow.
+    /// `None` without points, and where all are equal in one coordinate up to underflow.
     pub fn new(points: &'a [[T; 3]]) -> Option<Self> {
         let first = *points.first()?;
-        let offsets = points.iter().flat_map(|p| p.iter().zip(first).map(|(&x, c)| x - c));
-        let largest = offsets.fold(T::zero(), |m, x| m.at_least(x).at_least(-x));
-        (largest >= T::TINY).then(|| Grid { points, first, scale: T::one() / largest.power_of_two() })
+        let mut scale = [T::zero(); 3];
+        let mut whole = T::HUGE;
+        for i in 0..3 {
+            let largest = points.iter().fold(T::zero(), |m, p| m.at_least((p[i] - first[i]).abs()));
+            if !(largest >= T::TINY) {
+                return None;
+            }
+            scale[i] = T::one() / largest.power_of_two();
+            whole = whole.at_most(scale[i]);
+        }
+        Some(Grid { points, first, scale, whole })
     }
 
     /// A point by its position in the list.
@@ -44,27 +55,28 @@ impl<'a, T: Real> Grid<'a, T> {
         let p = self.points.get(point)?;
         let mut node = [0; 3];
         for i in 0..3 {
-            node[i] = self.units(p[i], self.first[i]);
+            node[i] = units(p[i], self.first[i], self.scale[i]);
         }
         Some(node)
     }
 
-    /// A point relative to the first one, in units of M, rounded.
+    /// A point relative to the first one, in units of M of the longest axis, rounded.
     pub fn offset(&self, point: usize) -> Option<Vector<T, 3>> {
         let (p, first) = (self.points.get(point)?, self.first);
-        Some((Vector::from(*p) - Vector::from(first)) * self.scale)
+        Some((Vector::from(*p) - Vector::from(first)) * self.whole)
     }
+}
 
-    /// x - c. The difference is the rounded one and its error (Knuth), each a number of the format and rounded towards 0.
-    fn units(&self, x: T, c: T) -> i64 {
-        let difference = x - c;
-        let minus_c = difference - x;
-        let error = (x - (difference - minus_c)) - (c + minus_c);
-        let unit = T::count(1 << 30);
-        // The scale brings differences into [-2, 2]; all factors are powers of two.
-        let whole = |d: T| ((d * self.scale) * unit * unit).to_integer();
-        whole(difference) + whole(error)
-    }
+/// x - c in units of the grid. The difference is the rounded one and its error (Knuth), each a number of the format and rounded
+/// towards 0.
+fn units<T: Real>(x: T, c: T, scale: T) -> i64 {
+    let difference = x - c;
+    let minus_c = difference - x;
+    let error = (x - (difference - minus_c)) - (c + minus_c);
+    let unit = T::count(1 << 30);
+    // The scale brings differences into [-2, 2]; all factors are powers of two.
+    let whole = |d: T| ((d * scale) * unit * unit).to_integer();
+    whole(difference) + whole(error)
 }
 
 /// The plane through three nodes, with a normal that points to where they turn counterclockwise.
@@ -118,9 +130,9 @@ mod tests {
                 let points: Vec<[f64; 3]> = (0..20).map(|_| [0; 3].map(|_| (next() + offset) * size)).collect();
                 let grid = Grid::new(&points).unwrap();
                 for (i, p) in points.iter().enumerate() {
-                    for (x, (&p, c)) in grid.node(i).unwrap().iter().zip(p.iter().zip(points[0])) {
+                    for (k, x) in grid.node(i).unwrap().iter().enumerate() {
                         // Differences of neighbours in size are exact in f64.
-                        let exact = (p - c) * grid.scale * 2f64.powi(60);
+                        let exact = (p[k] - points[0][k]) * grid.scale[k] * 2f64.powi(60);
                         assert!((*x as f64 - exact).abs() <= 2f64.powi(9), "{x} {exact}");
                         assert!(x.abs() < (1 << 61) + (1 << 10));
                     }
