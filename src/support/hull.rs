@@ -100,7 +100,7 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
         }
     }
 
-    /// Heights of two points that differ by less cannot be told apart: 8 N roundoffs of sum |u_i| (|p_i| + |q_i|).
+    /// Heights of two points that differ by less cannot be told apart: N + 1 roundoffs of sum |u_i| (|p_i| + |q_i|).
     #[inline(always)]
     fn blur<const FAR: bool>(&self, u: &Vector<T, N>, p: &[T; N], q: &[T; N]) -> T {
         let mut size = T::zero();
@@ -108,7 +108,7 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
             let (p, q) = if FAR { (p[i] - self.first[i], q[i] - self.first[i]) } else { (p[i], q[i]) };
             size += u[i].abs() * (p.abs() + q.abs());
         }
-        size * (T::count(8 * N) * T::ROUNDOFF)
+        size * (T::count(N + 1) * T::ROUNDOFF)
     }
 
     /// Climbs on by heights above the vertex itself, whose error is that of the edge's length. `None` where these are level and
@@ -135,7 +135,7 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
                 if height > best.0 {
                     best = (height, next);
                 }
-                if height >= -(size * (T::count(8 * N) * T::ROUNDOFF)) {
+                if height >= -(size * (T::count(N + 1) * T::ROUNDOFF)) {
                     room &= level.push(edge).is_ok();
                 }
             }
