@@ -115,6 +115,7 @@ static void shapes(void) {
     REFUSES(box, NULL, QDIST_ERROR_NULL);
     REFUSES(points, NULL, QDIST_ERROR_NULL);
     REFUSES(hull, NULL, QDIST_ERROR_NULL);
+    REFUSES(hull_large, NULL, QDIST_ERROR_NULL);
     REFUSES(set, NULL, QDIST_ERROR_NULL);
     CHECK(qdist_body_box_f64(NULL, &box) == QDIST_ERROR_NULL);
     CHECK(qdist_body_points_f64(NULL, NULL) == QDIST_ERROR_NULL);
@@ -126,9 +127,12 @@ static void lists(void) {
     qdist_set_f64 set, before;
     qdist_points_f64 list = {corners, 4, 3};
     qdist_hull_f64 hull, hull_before;
+    qdist_hull_large_f64 large, large_before;
     uint16_t graph[QDIST_HULL_GRAPH_LEN(4)];
+    uint32_t wide[QDIST_HULL_LARGE_GRAPH_LEN(4)], scratch[QDIST_HULL_LARGE_WORKSPACE_LEN(4)];
     qdist_solver *solver, *small;
-    const uint32_t words = QDIST_HULL_GRAPH_LEN(4);
+    const uint32_t words = QDIST_HULL_GRAPH_LEN(4), wides = QDIST_HULL_LARGE_GRAPH_LEN(4);
+    const uint32_t work = QDIST_HULL_LARGE_WORKSPACE_LEN(4);
     unsigned k;
 
     memset(&set, 0x55, sizeof set);
@@ -187,6 +191,31 @@ static void lists(void) {
         CHECK(qdist_body_hull_f64(&a, &hull) == QDIST_OK && qdist_body_points_f64(&b, &list) == QDIST_OK);
         CHECK(qdist_depth3_f64(solver, &a, &b, NULL, &depth) == QDIST_OK && depth.lower <= depth.upper);
     }
+
+    memset(&large, 0x55, sizeof large);
+    memcpy(&large_before, &large, sizeof large);
+#define PREPARE(hull, points, count, graph, words, scratch, work) \
+    qdist_hull_large_prepare_f64(hull, points, count, graph, words, scratch, work, NULL, NULL)
+    CHECK(PREPARE(NULL, corners, 4, wide, wides, scratch, work) == QDIST_ERROR_NULL);
+    CHECK(PREPARE(&large, NULL, 4, wide, wides, scratch, work) == QDIST_ERROR_NULL);
+    CHECK(PREPARE(&large, corners, 4, NULL, wides, scratch, work) == QDIST_ERROR_NULL);
+    CHECK(PREPARE(&large, corners, 4, wide, wides, NULL, work) == QDIST_ERROR_NULL);
+    CHECK(PREPARE(&large, corners, 4, (uint32_t *)((char *)wide + 1), wides, scratch, work) == QDIST_ERROR_ALIGNMENT);
+    CHECK(PREPARE(&large, corners, 4, wide, wides, (uint32_t *)((char *)scratch + 2), work) == QDIST_ERROR_ALIGNMENT);
+    CHECK(PREPARE(&large, corners, 0, wide, wides, scratch, work) == QDIST_ERROR_ARGUMENT);
+    CHECK(PREPARE(&large, corners, QDIST_HULL_LARGE_POINTS + 1, wide, wides, scratch, work) == QDIST_ERROR_HULL_POINTS);
+    CHECK(PREPARE(&large, corners, 4, wide, wides - 1, scratch, work) == QDIST_ERROR_WORKSPACE_SIZE);
+    CHECK(PREPARE(&large, corners, 4, wide, wides, scratch, work - 1) == QDIST_ERROR_WORKSPACE_SIZE);
+    CHECK(PREPARE(&large, corners, 3, wide, wides, scratch, work) == QDIST_ERROR_FLAT);
+    corners[11] = BAD[0];
+    CHECK(PREPARE(&large, corners, 4, wide, wides, scratch, work) == QDIST_ERROR_NONFINITE);
+    corners[11] = 1;
+    CHECK(memcmp(&large, &large_before, sizeof large) == 0);
+    CHECK(PREPARE(&large, corners, 4, wide, wides, scratch, work) == QDIST_OK);
+    large.graph_len = 1;
+    REFUSES(hull_large, &large, QDIST_ERROR_ARGUMENT);
+    large.graph_len = wides, large.graph = NULL;
+    REFUSES(hull_large, &large, QDIST_ERROR_NULL);
 }
 
 static void sets_and_gauges(void) {

@@ -651,10 +651,14 @@ static void Q(hulls)(qdist_solver *solver) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, COUNT, 2 * COUNT + 16)];
     static REAL points[3 * COUNT];
     static uint16_t graph[QDIST_HULL_GRAPH_LEN(COUNT)];
+    static uint32_t large_graph[QDIST_HULL_LARGE_GRAPH_LEN(COUNT)], scratch[QDIST_HULL_LARGE_WORKSPACE_LEN(COUNT)];
+    const uint32_t room = QDIST_HULL_LARGE_GRAPH_LEN(COUNT), work = QDIST_HULL_LARGE_WORKSPACE_LEN(COUNT);
     Q(qdist_points) list;
     Q(qdist_hull) hull;
-    Q(body) a, b, c;
+    Q(qdist_hull_large) large;
+    Q(body) a, b, c, d;
     Q(depth) one, two;
+    Q(world) w;
     qdist_solver *workspace;
     int i, far;
 
@@ -665,7 +669,7 @@ static void Q(hulls)(qdist_solver *solver) {
             points[3 * i + 1] = (REAL)(r * sin(t));
             points[3 * i + 2] = (REAL)z;
         }
-        CHECK(Q(qdist_solver_init3)(memory, sizeof memory, COUNT, 2 * COUNT + 16, &workspace) == QDIST_OK);
+        CHECK(Q(qdist_solver_init3)(memory, sizeof memory, 4, 2 * COUNT, &workspace) == QDIST_OK);
         CHECK(Q(qdist_hull_prepare)(&hull, points, COUNT, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_OK);
         list.points = points, list.count = COUNT, list.dimension = 3;
         CHECK(Q(qdist_body_hull)(&a, &hull) == QDIST_OK && Q(qdist_body_points)(&b, &list) == QDIST_OK);
@@ -676,7 +680,16 @@ static void Q(hulls)(qdist_solver *solver) {
         two = Q(ask)(solver, &b, &c, NULL);
         CHECK(one.lower <= two.upper && two.lower <= one.upper && one.upper - one.lower < 1e-3);
         CHECK(fabs(one.upper - (2 - sqrt(0.25 + 0.5625))) < 0.05 && Q(consistent)(&one, 1));
+        CHECK(Q(qdist_hull_large_prepare)(&large, points, COUNT, large_graph, room, scratch, work, NULL, NULL) == QDIST_OK);
+        CHECK(Q(qdist_body_hull_large)(&d, &large) == QDIST_OK && (d.spread > 0) == far);
+        two = Q(ask)(solver, &d, &c, NULL);
+        CHECK(one.lower == two.lower && one.upper == two.upper && one.iterations == two.iterations);
     }
+    memset(&w, 0, sizeof w);
+    CHECK(Q(qdist_hull_prepare_until)(&hull, points, COUNT, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace, Q(clock), &w) ==
+          QDIST_ERROR_INTERRUPTED);
+    CHECK(Q(qdist_hull_large_prepare)(&large, points, COUNT, large_graph, room, scratch, work, Q(clock), &w) ==
+          QDIST_ERROR_INTERRUPTED);
     points[3] = points[0], points[4] = points[1], points[5] = points[2];
     CHECK(Q(qdist_hull_prepare)(&hull, points, 3, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_ERROR_FLAT);
 }

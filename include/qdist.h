@@ -25,7 +25,7 @@
  *             dimensions or shapes.
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
- *             qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
+ *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
@@ -87,8 +87,16 @@ typedef struct qdist_solver qdist_solver;
 #define QDIST_WORKSPACE_WORDS_F64(dim, nv, nf) ((QDIST_WORKSPACE_BYTES_F64(dim, nv, nf) + 7) / 8)
 #define QDIST_WORKSPACE_WORDS_F32(dim, nv, nf) ((QDIST_WORKSPACE_BYTES_F32(dim, nv, nf) + 7) / 8)
 
+/* The largest number of points, whatever they are, that qdist_hull_prepare takes; that qdist_hull_large_prepare takes. */
+#define QDIST_HULL_POINTS UINT32_C(26214)
+#define QDIST_HULL_LARGE_POINTS UINT32_C(134217728)
+
 /* A number of uint16_t that suffices for the graph of a hull of `count` points. */
 #define QDIST_HULL_GRAPH_LEN(count) (UINT32_C(11) * (count) + UINT32_C(16))
+
+/* Numbers of uint32_t that suffice for the graph of a large hull of `count` points, and as workspace to prepare it. */
+#define QDIST_HULL_LARGE_GRAPH_LEN(count) (UINT32_C(8) * (count) + UINT32_C(16))
+#define QDIST_HULL_LARGE_WORKSPACE_LEN(count) (UINT32_C(18) * (count))
 
 /* =================================================== STATUS, OUTCOME AND PLAN ===================================================
  *
@@ -110,9 +118,9 @@ typedef int32_t qdist_outcome;
 typedef int32_t qdist_plan;
 
 // Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
-// clock or at a flag that an interrupt handler sets.
+// clock or at a flag that an interrupt handler sets. (While a hull is prepared: asked for every 1,024 points looked at.)
 //
-// user: interrupt_user of the options.
+// user: interrupt_user of the options or the call.
 typedef int32_t (*qdist_interrupt)(void *user);
 
 // The call worked.
@@ -130,7 +138,7 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // struct_size is not the size of a struct that this library knows.
 #define QDIST_ERROR_STRUCT_SIZE 4
 
-// The memory is shorter than QDIST_WORKSPACE_BYTES or QDIST_HULL_GRAPH_LEN says.
+// The memory is shorter than QDIST_WORKSPACE_BYTES, QDIST_HULL_GRAPH_LEN or QDIST_HULL_LARGE_GRAPH_LEN says.
 #define QDIST_ERROR_WORKSPACE_SIZE 5
 
 // Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
@@ -218,6 +226,12 @@ typedef int32_t (*qdist_interrupt)(void *user);
 
 // A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
 #define QDIST_ERROR_UNBOUNDED 33
+
+// `interrupt` of qdist_hull_prepare_until or qdist_hull_large_prepare said so.
+#define QDIST_ERROR_INTERRUPTED 34
+
+// A hull of more points, or with more vertices, than the words of its graph can number: see QDIST_HULL_POINTS.
+#define QDIST_ERROR_HULL_POINTS 35
 
 // The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
@@ -535,8 +549,9 @@ typedef struct {
     uint32_t dimension;
 } qdist_points_f64;
 
-// A large convex hull in space: points, and the graph of their hull's edges. Made by qdist_hull_prepare_f64. The
-// graph is plain numbers without addresses: it may be kept in a file or in flash.
+// A convex hull in space of up to QDIST_HULL_POINTS points, and the graph of its edges. Made by qdist_hull_prepare_f64. The
+// graph is plain numbers without addresses: it may be kept in a file or in flash. Any content is safe to use, and the time of a
+// support call is bounded by the number of points.
 typedef struct {
     // Of dimension 3.
     qdist_points_f64 points;
@@ -545,6 +560,15 @@ typedef struct {
     uint32_t graph_len;
 } qdist_hull_f64;
 
+// The same of any number of points. Made by qdist_hull_large_prepare_f64.
+typedef struct {
+    // Of dimension 3.
+    qdist_points_f64 points;
+    const uint32_t *graph;
+    // Length of `graph`.
+    uint32_t graph_len;
+} qdist_hull_large_f64;
+
 // Makes a set of a list of points of any dimension. Reads all of them.
 qdist_status qdist_set_points_f64(qdist_set_f64 *set, const qdist_points_f64 *shape);
 
@@ -552,8 +576,12 @@ qdist_status qdist_set_points_f64(qdist_set_f64 *set, const qdist_points_f64 *sh
 qdist_status qdist_body_points_f64(qdist_body_f64 *body, const qdist_points_f64 *shape);
 
 // Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
-// dimension 3, as workspace: max_vertices >= count and max_facets >= 2 * count + 16 always suffice. `count` is at
-// most 65534, and QDIST_HULL_GRAPH_LEN(count) words suffice. Points inside the hull are legal.
+// dimension 3, as workspace: max_facets >= 2 * count always suffices, whatever max_vertices is. QDIST_HULL_GRAPH_LEN(count) words
+// are needed. Points inside the hull are legal, and so are equal points.
+//
+// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
+// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
+// the function to call.
 qdist_status qdist_hull_prepare_f64(qdist_hull_f64 *hull,
                                     const double *points,
                                     uint32_t count,
@@ -561,8 +589,34 @@ qdist_status qdist_hull_prepare_f64(qdist_hull_f64 *hull,
                                     uint32_t graph_capacity,
                                     qdist_solver *solver);
 
+// The same with a deadline: with `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+qdist_status qdist_hull_prepare_until_f64(qdist_hull_f64 *hull,
+                                          const double *points,
+                                          uint32_t count,
+                                          uint16_t *graph,
+                                          uint32_t graph_capacity,
+                                          qdist_solver *solver,
+                                          qdist_interrupt interrupt,
+                                          void *interrupt_user);
+
+// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
+// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
+// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+qdist_status qdist_hull_large_prepare_f64(qdist_hull_large_f64 *hull,
+                                          const double *points,
+                                          uint32_t count,
+                                          uint32_t *graph,
+                                          uint32_t graph_capacity,
+                                          uint32_t *workspace,
+                                          uint32_t workspace_capacity,
+                                          qdist_interrupt interrupt,
+                                          void *interrupt_user);
+
 // Makes a body of a prepared hull. Reads all points.
 qdist_status qdist_body_hull_f64(qdist_body_f64 *body, const qdist_hull_f64 *shape);
+
+// Makes a body of a large hull. Reads all points.
+qdist_status qdist_body_hull_large_f64(qdist_body_f64 *body, const qdist_hull_large_f64 *shape);
 
 // Support function of a list of points of any dimension.
 int32_t qdist_points_support_f64(void *user, const double *direction, double *point);
@@ -578,6 +632,12 @@ int32_t qdist_hull_support_f64(void *user, const double *direction, double *poin
 
 // The same, more accurate where all points are far from the origin compared with their spread.
 int32_t qdist_hull_far_support_f64(void *user, const double *direction, double *point);
+
+// Support function of a large hull.
+int32_t qdist_hull_large_support_f64(void *user, const double *direction, double *point);
+
+// The same, more accurate where all points are far from the origin compared with their spread.
+int32_t qdist_hull_large_far_support_f64(void *user, const double *direction, double *point);
 
 /* ===================================================== HULLS OF TWO BODIES =====================================================
  *
@@ -1349,6 +1409,12 @@ typedef struct {
     uint32_t graph_len;
 } qdist_hull_f32;
 
+typedef struct {
+    qdist_points_f32 points;
+    const uint32_t *graph;
+    uint32_t graph_len;
+} qdist_hull_large_f32;
+
 qdist_status qdist_set_points_f32(qdist_set_f32 *set, const qdist_points_f32 *shape);
 
 qdist_status qdist_body_points_f32(qdist_body_f32 *body, const qdist_points_f32 *shape);
@@ -1360,7 +1426,28 @@ qdist_status qdist_hull_prepare_f32(qdist_hull_f32 *hull,
                                     uint32_t graph_capacity,
                                     qdist_solver *solver);
 
+qdist_status qdist_hull_prepare_until_f32(qdist_hull_f32 *hull,
+                                          const float *points,
+                                          uint32_t count,
+                                          uint16_t *graph,
+                                          uint32_t graph_capacity,
+                                          qdist_solver *solver,
+                                          qdist_interrupt interrupt,
+                                          void *interrupt_user);
+
+qdist_status qdist_hull_large_prepare_f32(qdist_hull_large_f32 *hull,
+                                          const float *points,
+                                          uint32_t count,
+                                          uint32_t *graph,
+                                          uint32_t graph_capacity,
+                                          uint32_t *workspace,
+                                          uint32_t workspace_capacity,
+                                          qdist_interrupt interrupt,
+                                          void *interrupt_user);
+
 qdist_status qdist_body_hull_f32(qdist_body_f32 *body, const qdist_hull_f32 *shape);
+
+qdist_status qdist_body_hull_large_f32(qdist_body_f32 *body, const qdist_hull_large_f32 *shape);
 
 int32_t qdist_points_support_f32(void *user, const float *direction, float *point);
 
@@ -1371,6 +1458,10 @@ int32_t qdist_points3_far_support_f32(void *user, const float *direction, float 
 int32_t qdist_hull_support_f32(void *user, const float *direction, float *point);
 
 int32_t qdist_hull_far_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_hull_large_support_f32(void *user, const float *direction, float *point);
+
+int32_t qdist_hull_large_far_support_f32(void *user, const float *direction, float *point);
 
 /* ================================================== HULLS OF TWO BODIES, FLOAT ================================================== */
 

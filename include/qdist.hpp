@@ -94,6 +94,7 @@ private:
     QDIST_HPP_BODY(suffix, cone)                                                                                           \
     QDIST_HPP_BODY(suffix, points)                                                                                         \
     QDIST_HPP_BODY(suffix, hull)                                                                                           \
+    QDIST_HPP_BODY(suffix, hull_large)                                                                                     \
     QDIST_HPP_BODY(suffix, set)                                                                                            \
     QDIST_HPP_BODY(suffix, half_space)                                                                                     \
     QDIST_HPP_BODY(suffix, join)                                                                                           \

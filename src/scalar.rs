@@ -35,6 +35,8 @@ pub trait Real: RealField + Copy {
     fn of(value: f64) -> Self;
     /// A small count as a scalar, without a detour over `f64`.
     fn count(n: usize) -> Self;
+    /// Rounded towards 0; the nearest integer that there is for what is out of range, 0 for NaN.
+    fn to_integer(self) -> i64;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
     /// The power of two with the same exponent, for a normal number > 0.
@@ -79,6 +81,10 @@ macro_rules! real {
             #[inline(always)]
             fn count(n: usize) -> Self {
                 n as u32 as $t
+            }
+            #[inline(always)]
+            fn to_integer(self) -> i64 {
+                self as i64
             }
             #[inline(always)]
             fn finite(self) -> bool {

@@ -25,7 +25,7 @@
  *             dimensions or shapes.
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
- *             qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
+ *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
@@ -87,5 +87,13 @@ typedef struct qdist_solver qdist_solver;
 #define QDIST_WORKSPACE_WORDS_F64(dim, nv, nf) ((QDIST_WORKSPACE_BYTES_F64(dim, nv, nf) + 7) / 8)
 #define QDIST_WORKSPACE_WORDS_F32(dim, nv, nf) ((QDIST_WORKSPACE_BYTES_F32(dim, nv, nf) + 7) / 8)
 
+/* The largest number of points, whatever they are, that qdist_hull_prepare takes; that qdist_hull_large_prepare takes. */
+#define QDIST_HULL_POINTS UINT32_C(26214)
+#define QDIST_HULL_LARGE_POINTS UINT32_C(134217728)
+
 /* A number of uint16_t that suffices for the graph of a hull of `count` points. */
 #define QDIST_HULL_GRAPH_LEN(count) (UINT32_C(11) * (count) + UINT32_C(16))
+
+/* Numbers of uint32_t that suffice for the graph of a large hull of `count` points, and as workspace to prepare it. */
+#define QDIST_HULL_LARGE_GRAPH_LEN(count) (UINT32_C(8) * (count) + UINT32_C(16))
+#define QDIST_HULL_LARGE_WORKSPACE_LEN(count) (UINT32_C(18) * (count))

@@ -24,7 +24,7 @@ pub const QDIST_ERROR_ARGUMENT: qdist_status = 2;
 pub const QDIST_ERROR_NONFINITE: qdist_status = 3;
 /// struct_size is not the size of a struct that this library knows.
 pub const QDIST_ERROR_STRUCT_SIZE: qdist_status = 4;
-/// The memory is shorter than QDIST_WORKSPACE_BYTES or QDIST_HULL_GRAPH_LEN says.
+/// The memory is shorter than QDIST_WORKSPACE_BYTES, QDIST_HULL_GRAPH_LEN or QDIST_HULL_LARGE_GRAPH_LEN says.
 pub const QDIST_ERROR_WORKSPACE_SIZE: qdist_status = 5;
 /// Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
 pub const QDIST_ERROR_ALIGNMENT: qdist_status = 6;
@@ -84,6 +84,10 @@ pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
 pub const QDIST_ERROR_BUSY: qdist_status = 32;
 /// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
 pub const QDIST_ERROR_UNBOUNDED: qdist_status = 33;
+/// `interrupt` of qdist_hull_prepare_until or qdist_hull_large_prepare said so.
+pub const QDIST_ERROR_INTERRUPTED: qdist_status = 34;
+/// A hull of more points, or with more vertices, than the words of its graph can number: see QDIST_HULL_POINTS.
+pub const QDIST_ERROR_HULL_POINTS: qdist_status = 35;
 
 /// What did the run conclude?
 pub type qdist_outcome = i32;
@@ -129,9 +133,9 @@ pub const QDIST_PLAN_CONES: qdist_plan = 3;
 pub const QDIST_PLAN_WARM: qdist_plan = 4;
 
 /// Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
-/// clock or at a flag that an interrupt handler sets.
+/// clock or at a flag that an interrupt handler sets. (While a hull is prepared: asked for every 1,024 points looked at.)
 ///
-/// user: interrupt_user of the options.
+/// user: interrupt_user of the options or the call.
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
@@ -178,6 +182,8 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
         QDIST_ERROR_INTERNAL => c"defect of the library",
         QDIST_ERROR_BUSY => c"solver in use by the caller of the callback",
         QDIST_ERROR_UNBOUNDED => c"half space where it cannot serve",
+        QDIST_ERROR_INTERRUPTED => c"interrupted",
+        QDIST_ERROR_HULL_POINTS => c"too many points for the words of a hull",
         _ => c"unknown status",
     }
     .as_ptr()
@@ -276,6 +282,8 @@ pub(super) fn from_graph(error: GraphError) -> qdist_status {
     match error {
         GraphError::Shape(error) => from_shape(error),
         GraphError::Flat => QDIST_ERROR_FLAT,
+        GraphError::Points => QDIST_ERROR_HULL_POINTS,
+        GraphError::Interrupted => QDIST_ERROR_INTERRUPTED,
         GraphError::Capacity => QDIST_ERROR_CAPACITY,
         GraphError::Words => QDIST_ERROR_WORKSPACE_SIZE,
     }

@@ -227,29 +227,6 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.iter().take(self.facet_top).filter(|f| f.is_live())
     }
 
-    /// From facet to better neighbour, to the one farthest beneath the point in units of its distance from the centre:
-    /// if that one does not see the point, none does.
-    pub fn climb(&self, from: Index, point: &Vector<T, N>) -> Option<Index> {
-        let height = |facet: &Facet<T, N>| {
-            let dual = facet.normal.dot(&(point - self.center));
-            dual / (facet.offset - facet.normal.dot(&self.center))
-        };
-        let (mut at, mut best) = (from, height(self.facet(from)?));
-        for _ in 0..self.live {
-            let here = at;
-            for &next in &self.facet(here)?.neighbors {
-                let value = height(self.facet(next)?);
-                if value > best {
-                    (at, best) = (next, value);
-                }
-            }
-            if at == here {
-                break;
-            }
-        }
-        Some(at)
-    }
-
     /// The facet whose plane is nearest to the origin, with its normal and offset.
     pub fn nearest_facet(&self) -> Option<(Index, Vector<T, N>, T)> {
         let (index, f) = self.numbered_facets().reduce(|best, f| if f.1.offset < best.1.offset { f } else { best })?;
@@ -257,7 +234,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     }
 
     /// All live facets with their positions.
-    pub fn numbered_facets(&self) -> impl Iterator<Item = (Index, &Facet<T, N>)> {
+    fn numbered_facets(&self) -> impl Iterator<Item = (Index, &Facet<T, N>)> {
         let numbered = self.facets.iter().take(self.facet_top).enumerate().filter(|(_, f)| f.is_live());
         numbered.filter_map(|(number, f)| Some((Index::try_from(number).ok()?, f)))
     }
@@ -383,22 +360,6 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             };
         }
         Some(())
-    }
-}
-
-impl<T: Real> Polytope<'_, T, 3> {
-    /// The edges, each once. (A ridge in space is an edge.)
-    pub fn edges(&self) -> impl Iterator<Item = (Vertex<T, 3>, Vertex<T, 3>)> {
-        let numbered = self.facets.iter().take(self.facet_top).enumerate().filter(|(_, f)| f.is_live());
-        numbered.flat_map(move |(number, f)| {
-            let [a, b, c] = f.vertices;
-            let ridges = [(0, b, c), (1, c, a), (2, a, b)];
-            ridges.into_iter().filter_map(move |(slot, v, w)| {
-                let first = usize::from(*f.neighbors.get(slot)?) > number;
-                let vertex = |i: Index| self.vertices.get(usize::from(i)).copied();
-                if first { Some((vertex(v)?, vertex(w)?)) } else { None }
-            })
-        })
     }
 }
 

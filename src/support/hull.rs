@@ -1,6 +1,6 @@
 //! Convex hulls of point lists: by linear scan (any dimension), or by hill climbing on a prepared graph (3-D).
 
-use super::graph::HullGraph;
+use super::graph::{HullGraph, SEEDS, Word};
 use super::load::one_by_one;
 use super::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled};
 use super::{Failure, Support};
@@ -24,9 +24,12 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
     /// Relative error N roundoffs of |u| |p|, with `FAR` N + 1 of |u| |p - first|.
     #[inline(always)]
     fn height<const FAR: bool>(&self, u: &Vector<T, N>, p: &[T; N]) -> T {
-        let terms = u.iter().zip(p.iter().zip(self.first));
-        // -0 + x is x, so the compiler drops the first addition; 0 + x is not (x = -0).
-        terms.fold(-T::zero(), |s, (&a, (&x, &c))| s + a * if FAR { x - c } else { x })
+        // -0 + x is x, so the compiler drops the first addition; 0 + x is not (x = -0). (A fold over iterators is not always inlined.)
+        let mut sum = -T::zero();
+        for i in 0..N {
+            sum += u[i] * if FAR { p[i] - self.first[i] } else { p[i] };
+        }
+        sum
     }
 
     /// The farthest point for a direction in range, the first one of equals. Four at a time, as a tournament of values and small
@@ -53,40 +56,112 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
         best.1
     }
 
-    /// Best of `best` and the listed vertices.
+    /// The best of the listed vertices, the first one of equals.
     #[inline(always)]
-    fn best_of<const FAR: bool>(&self, u: &Vector<T, N>, list: &[u16], best: Option<(T, u16)>) -> Option<(T, u16)> {
-        let mut best = best;
+    fn best_of<const FAR: bool, W: Word>(&self, u: &Vector<T, N>, list: &[W]) -> Option<(T, W)> {
+        let mut best = (-T::HUGE, W::EMPTY);
         for &vertex in list {
-            if let Some(p) = self.points.get(usize::from(vertex)) {
+            if let Some(p) = self.points.get(vertex.position()) {
                 let height = self.height::<FAR>(u, p);
-                if best.is_none_or(|(most, _)| height > most) {
-                    best = Some((height, vertex));
+                if height > best.0 {
+                    best = (height, vertex);
                 }
             }
         }
-        best
+        (best.1 != W::EMPTY).then_some(best)
     }
 
     /// Where climbing the graph ends, for a direction in range: see [`Hull`].
     #[inline(always)]
-    pub fn climb<const FAR: bool>(&self, graph: &HullGraph<'_>, u: &Vector<T, N>) -> &'a [T; N] {
-        let mut best = self.best_of::<FAR>(u, graph.seeds(), None);
-        // Each step is strictly better than the one before, so there are fewer steps than points: the bound is for
-        // the reader.
-        for _ in 0..self.points.len() {
-            let Some((height, vertex)) = best else { break };
-            let next = self.best_of::<FAR>(u, graph.neighbors(vertex), best);
-            if next.is_none_or(|(most, _)| most <= height) {
-                break;
+    pub fn climb<const FAR: bool, W: Word>(&self, graph: &HullGraph<'_, W>, u: &Vector<T, N>) -> &'a [T; N] {
+        self.walk::<FAR, W>(graph, u).unwrap_or_else(|| self.scan::<FAR>(u))
+    }
+
+    /// `None` where the graph has no usable seed, or is not that of a hull: it makes the walk longer than a hull's edges do.
+    #[inline(always)]
+    fn walk<const FAR: bool, W: Word>(&self, graph: &HullGraph<'_, W>, u: &Vector<T, N>) -> Option<&'a [T; N]> {
+        // Each step is strictly better than the one before, so a hull's lists are read once at most: n points have fewer
+        // than 3 n edges, from two ends each.
+        let most = 6 * self.points.len() + SEEDS;
+        let mut left = most.checked_sub(graph.seeds().len())?;
+        let (mut height, mut vertex) = self.best_of::<FAR, W>(u, graph.seeds())?;
+        loop {
+            let list = graph.neighbors(vertex);
+            left = left.checked_sub(list.len())?;
+            let here = self.points.get(vertex.position())?;
+            match self.best_of::<FAR, W>(u, list) {
+                Some(better) if better.0 > height => (height, vertex) = better,
+                // Rounding may hide the way up among neighbours that are as high.
+                Some((next, at)) if height - next <= self.blur::<FAR>(u, here, self.points.get(at.position())?) => {
+                    return self.creep(graph, u, vertex, most);
+                }
+                _ => return Some(here),
             }
-            best = next;
-        }
-        match best.and_then(|(_, vertex)| self.points.get(usize::from(vertex))) {
-            Some(p) => p,
-            None => self.scan::<FAR>(u),
         }
     }
+
+    /// Heights of two points that differ by less cannot be told apart: N + 1 roundoffs of sum |u_i| (|p_i| + |q_i|).
+    #[inline(always)]
+    fn blur<const FAR: bool>(&self, u: &Vector<T, N>, p: &[T; N], q: &[T; N]) -> T {
+        let mut size = T::zero();
+        for i in 0..N {
+            let (p, q) = if FAR { (p[i] - self.first[i], q[i] - self.first[i]) } else { (p[i], q[i]) };
+            size += u[i].abs() * (p.abs() + q.abs());
+        }
+        size * (T::count(N + 1) * T::ROUNDOFF)
+    }
+
+    /// Climbs on by heights above the vertex itself, whose error is that of the edge's length. `None` where these are level and
+    /// cannot tell either.
+    #[cold]
+    #[inline(never)]
+    fn creep<W: Word>(&self, graph: &HullGraph<'_, W>, u: &Vector<T, N>, from: W, most: usize) -> Option<&'a [T; N]> {
+        let (mut vertex, mut left) = (from, most);
+        loop {
+            let (here, list) = (self.points.get(vertex.position())?, graph.neighbors(vertex));
+            left = left.checked_sub(list.len())?;
+            let mut best = (T::zero(), vertex);
+            let mut level = heapless::Vec::<Vector<T, N>, 8>::new();
+            let mut room = true;
+            for &next in list {
+                let Some(p) = self.points.get(next.position()) else { continue };
+                let (mut edge, mut height, mut size) = (Vector::<T, N>::zeros(), T::zero(), T::zero());
+                for i in 0..N {
+                    edge[i] = p[i] - here[i];
+                    let rise = u[i] * edge[i];
+                    height += rise;
+                    size += rise.abs();
+                }
+                if height > best.0 {
+                    best = (height, next);
+                }
+                if height >= -(size * (T::count(N + 1) * T::ROUNDOFF)) {
+                    room &= level.push(edge).is_ok();
+                }
+            }
+            if best.1 == vertex {
+                return (room && are_apart(&level)).then_some(here);
+            }
+            vertex = best.1;
+        }
+    }
+}
+
+/// Are level edges of a vertex enough to say that it is a top? What is up is a sum of edges, and edges that go up no more than
+/// rounding can only hide it where that sum is much longer than what it leads to: two of them are nearly on one line, as around a
+/// point that rounding has put beside an edge.
+fn are_apart<T: Real, const N: usize>(edges: &[Vector<T, N>]) -> bool {
+    let share = T::count(255) / T::count(256);
+    let mut rest = edges;
+    while let Some((e, others)) = rest.split_first() {
+        // Not a number, an overflow, and nothing count as on one line.
+        let apart = |f: &Vector<T, N>| e.dot(f) * e.dot(f) < share * e.dot(e) * f.dot(f);
+        if !others.iter().all(apart) {
+            return false;
+        }
+        rest = others;
+    }
+    true
 }
 
 /// The convex hull of a list of points, in any dimension, by linear scan: N products per point. Among equals
@@ -183,33 +258,35 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
 /// small part of the products of a scan (480 vertices on a sphere: a sixth of the time).
 ///
 /// The climb goes to the best neighbour while that is strictly better, so it ends. In exact arithmetic it ends at a
-/// farthest vertex; where rounding makes a plateau of nearly equal vertices it may end short of one. So
+/// farthest vertex. Among neighbours that rounding makes equally high it goes on by the heights of the edges themselves, which are
+/// accurate for short ones, and where these are level and cannot tell, it scans. So
 /// [`support`](Support::support) returns a point of the core always, but keeps the second promise only as far as the
-/// graph is that of the hull and no plateau is in the way. [`exhaustive`](Support::exhaustive) is the linear scan
+/// graph is that of the hull. [`exhaustive`](Support::exhaustive) is the linear scan
 /// of [`Points`], and keeps it with the same `error`. Entries of the graph that are out of range are ignored; a graph
-/// without a usable seed is the linear scan.
+/// without a usable seed is the linear scan, and so is one whose lists turn out to be longer than those of a hull: n points never cost
+/// more than 25 n products.
 #[derive(Clone, Copy, Debug)]
-pub struct Hull<'a, T> {
+pub struct Hull<'a, T, W = u16> {
     all: Points<'a, T, 3>,
-    graph: HullGraph<'a>,
+    graph: HullGraph<'a, W>,
 }
 
-impl<'a, T: Real> Hull<'a, T> {
+impl<'a, T: Real, W: Word> Hull<'a, T, W> {
     /// The hull of `points`, with the graph prepared for these points. Reads all points once.
     ///
     /// # Errors
     /// [`ShapeError::Empty`], [`ShapeError::NonFinite`].
-    pub fn new(points: &'a [[T; 3]], graph: HullGraph<'a>) -> Result<Self, ShapeError> {
+    pub fn new(points: &'a [[T; 3]], graph: HullGraph<'a, W>) -> Result<Self, ShapeError> {
         Ok(Self { all: Points::new(points)?, graph })
     }
 }
 
-impl<T: Real> Support<T, 3> for Hull<'_, T> {
+impl<T: Real, W: Word> Support<T, 3> for Hull<'_, T, W> {
     #[inline]
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
         let (list, u) = (&self.all.list, self.all.in_range(u));
         let near = self.all.spread.is_none();
-        let p = if near { list.climb::<false>(&self.graph, &u) } else { list.climb::<true>(&self.graph, &u) };
+        let p = if near { list.climb::<false, W>(&self.graph, &u) } else { list.climb::<true, W>(&self.graph, &u) };
         Ok(Vector::from(*p))
     }
     #[inline]

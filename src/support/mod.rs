@@ -35,8 +35,8 @@ mod solids;
 
 pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use combine::{Measured, total};
-pub(crate) use graph::{BLOCK, EMPTY, GraphWriter, SEEDS};
-pub use graph::{HullGraph, graph_len};
+pub(crate) use graph::{GraphWriter, SEEDS};
+pub use graph::{HullGraph, Word, graph_len, large_graph_len};
 #[cfg(feature = "capi")]
 pub(crate) use hull::List;
 pub use hull::{Hull, Points};

@@ -5,16 +5,18 @@
 //! coordinates are read and checked: make it anew when they change.
 
 use super::super::generic::{
-    MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, gaps, in_range, put, reach, shared,
-    tiny,
+    Deadline, MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, gaps, in_range, put, reach,
+    shared, tiny,
 };
 use super::super::handle::{self, qdist_solver};
 use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_WORKSPACE_SIZE, from_graph, qdist_status, status,
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_HULL_POINTS, QDIST_ERROR_WORKSPACE_SIZE,
+    from_graph, qdist_interrupt, qdist_status, status,
 };
 use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64, room};
+use crate::prepare::{HullFacet, hull_facets, prepare_hull};
 use crate::scalar::Real;
-use crate::support::{HullGraph, List, Points, Support, graph_len, near_unit, one_by_one};
+use crate::support::{HullGraph, List, Points, Support, Word, graph_len, large_graph_len, near_unit, one_by_one};
 use core::ffi::c_void;
 
 /// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
@@ -27,8 +29,9 @@ pub struct qdist_points_f64 {
     pub dimension: u32,
 }
 
-/// A large convex hull in space: points, and the graph of their hull's edges. Made by qdist_hull_prepare_f64. The
-/// graph is plain numbers without addresses: it may be kept in a file or in flash.
+/// A convex hull in space of up to QDIST_HULL_POINTS points, and the graph of its edges. Made by qdist_hull_prepare_f64. The
+/// graph is plain numbers without addresses: it may be kept in a file or in flash. Any content is safe to use, and the time of a
+/// support call is bounded by the number of points.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_hull_f64 {
@@ -41,8 +44,29 @@ pub struct qdist_hull_f64 {
 
 gaps!(qdist_hull_f64, points.dimension..graph, graph_len..);
 
-// The macro QDIST_HULL_GRAPH_LEN.
-const _: () = assert!(graph_len(0) <= 16 && graph_len(1000) <= 11 * 1000 + 16 && graph_len(65535) <= 11 * 65535 + 16);
+/// The same of any number of points. Made by qdist_hull_large_prepare_f64.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_hull_large_f64 {
+    /// Of dimension 3.
+    pub points: qdist_points_f64,
+    pub graph: *const u32,
+    /// Length of `graph`.
+    pub graph_len: u32,
+}
+
+gaps!(qdist_hull_large_f64, points.dimension..graph, graph_len..);
+
+// The macros of the header.
+const _: () = {
+    assert!(graph_len(0) <= 16 && graph_len(1000) <= 11 * 1000 + 16 && graph_len(65535) <= 11 * 65535 + 16);
+    assert!(large_graph_len(0) <= 16 && large_graph_len(1 << 27) <= 8 * (1 << 27) + 16);
+    assert!(<u16 as Word>::MAX_POINTS == 26214 && <u32 as Word>::MAX_POINTS == 134_217_728);
+    assert!(
+        hull_facets(1000) * size_of::<HullFacet>() <= 4 * 18 * 1000 && align_of::<HullFacet>() == align_of::<u32>()
+    );
+    assert!(18 * <u32 as Word>::MAX_POINTS as u64 <= u32::MAX as u64);
+};
 
 /// Makes a set of a list of points of any dimension. Reads all of them.
 #[unsafe(no_mangle)]
@@ -88,8 +112,12 @@ pub unsafe extern "C" fn qdist_body_points_f64(
 }
 
 /// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
-/// dimension 3, as workspace: max_vertices >= count and max_facets >= 2 * count + 16 always suffice. `count` is at
-/// most 65534, and QDIST_HULL_GRAPH_LEN(count) words suffice. Points inside the hull are legal.
+/// dimension 3, as workspace: max_facets >= 2 * count always suffices, whatever max_vertices is. QDIST_HULL_GRAPH_LEN(count) words
+/// are needed. Points inside the hull are legal, and so are equal points.
+///
+/// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
+/// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
+/// the function to call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_hull_prepare_f64(
     hull: *mut qdist_hull_f64,
@@ -99,25 +127,74 @@ pub unsafe extern "C" fn qdist_hull_prepare_f64(
     graph_capacity: u32,
     solver: *mut qdist_solver,
 ) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { prepare_until(hull, points, count, graph, graph_capacity, solver, Deadline::NEVER) })
+}
+
+/// The same with a deadline: with `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_prepare_until_f64(
+    hull: *mut qdist_hull_f64,
+    points: *const f64,
+    count: u32,
+    graph: *mut u16,
+    graph_capacity: u32,
+    solver: *mut qdist_solver,
+    interrupt: qdist_interrupt,
+    interrupt_user: *mut c_void,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe {
+        let deadline = Deadline::new(interrupt, interrupt_user);
+        prepare_until(hull, points, count, graph, graph_capacity, solver, deadline)
+    })
+}
+
+/// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
+/// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
+/// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_large_prepare_f64(
+    hull: *mut qdist_hull_large_f64,
+    points: *const f64,
+    count: u32,
+    graph: *mut u32,
+    graph_capacity: u32,
+    workspace: *mut u32,
+    workspace_capacity: u32,
+    interrupt: qdist_interrupt,
+    interrupt_user: *mut c_void,
+) -> qdist_status {
     let prepare = || {
         aligned(hull)?;
         aligned(graph)?;
+        aligned(workspace)?;
         let list = qdist_points_f64 { points, count, dimension: 3 };
         // SAFETY: what the header asks of the caller.
-        let (coordinates, mut solver) = unsafe { (list.coordinates()?, handle::open::<f64, 3>(solver)?) };
+        let coordinates = unsafe { list.coordinates()? };
+        if count as usize > <u32 as Word>::MAX_POINTS {
+            return Err(QDIST_ERROR_HULL_POINTS);
+        }
         // Checked before the first word is written.
-        if (graph_capacity as usize) < graph_len(count as usize) {
+        let facets = hull_facets(count as usize);
+        let needed = facets * (size_of::<HullFacet>() / size_of::<u32>());
+        if (graph_capacity as usize) < large_graph_len(count as usize) || (workspace_capacity as usize) < needed {
             return Err(QDIST_ERROR_WORKSPACE_SIZE);
         }
         // SAFETY: what the header asks of the caller: as many words, which nothing else refers to. They need no initial value,
         // but a reference does.
-        let words = unsafe {
+        let (words, facets, deadline) = unsafe {
             graph.write_bytes(0, graph_capacity as usize);
-            core::slice::from_raw_parts_mut(graph, graph_capacity as usize)
+            workspace.write_bytes(0, needed);
+            let words = core::slice::from_raw_parts_mut(graph, graph_capacity as usize);
+            let facets = core::slice::from_raw_parts_mut(workspace.cast::<HullFacet>(), facets);
+            (words, facets, Deadline::new(interrupt, interrupt_user))
         };
-        solver.prepare_hull(as_points(coordinates), words).map_err(from_graph)?;
+        deadline
+            .during(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
+            .map_err(from_graph)?;
         // SAFETY: checked.
-        unsafe { put(hull, qdist_hull_f64 { points: list, graph, graph_len: graph_capacity }) };
+        unsafe { put(hull, qdist_hull_large_f64 { points: list, graph, graph_len: graph_capacity }) };
         Ok(())
     };
     status(prepare())
@@ -133,7 +210,27 @@ pub unsafe extern "C" fn qdist_body_hull_f64(body: *mut qdist_body_f64, shape: *
         // SAFETY: what the header asks of the caller.
         unsafe {
             let hull = shared(shape)?;
-            hull.graph()?;
+            hull.open()?;
+            fill(body, &hull.points, shape.cast(), supports, exhaustive)
+        }
+    };
+    status(fill())
+}
+
+/// Makes a body of a large hull. Reads all points.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_body_hull_large_f64(
+    body: *mut qdist_body_f64,
+    shape: *const qdist_hull_large_f64,
+) -> qdist_status {
+    let supports: [qdist_support_f64; 2] = [Some(qdist_hull_large_support_f64), Some(qdist_hull_large_far_support_f64)];
+    // The points are the first member of the hull, so that a function of points serves for a hull.
+    let exhaustive: [qdist_support_f64; 2] = [Some(qdist_points3_support_f64), Some(qdist_points3_far_support_f64)];
+    let fill = || {
+        // SAFETY: what the header asks of the caller.
+        unsafe {
+            let hull = shared(shape)?;
+            hull.open()?;
             fill(body, &hull.points, shape.cast(), supports, exhaustive)
         }
     };
@@ -181,14 +278,36 @@ pub unsafe extern "C" fn qdist_points3_far_support_f64(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_hull_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<false>(user, direction, point) })
+    status(unsafe { climb::<false, qdist_hull_f64>(user, direction, point) })
 }
 
 /// The same, more accurate where all points are far from the origin compared with their spread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_hull_far_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<true>(user, direction, point) })
+    status(unsafe { climb::<true, qdist_hull_f64>(user, direction, point) })
+}
+
+/// Support function of a large hull.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_large_support_f64(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { climb::<false, qdist_hull_large_f64>(user, direction, point) })
+}
+
+/// The same, more accurate where all points are far from the origin compared with their spread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_hull_large_far_support_f64(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { climb::<true, qdist_hull_large_f64>(user, direction, point) })
 }
 
 impl qdist_points_f64 {
@@ -225,14 +344,75 @@ impl qdist_points_f64 {
     }
 }
 
-impl qdist_hull_f64 {
+/// A hull of either size.
+trait Hull {
+    type Word: Word + 'static;
+    fn points(&self) -> &qdist_points_f64;
     /// # Safety
     /// If not NULL and aligned, `graph` is valid for reads of `graph_len` words.
+    unsafe fn open<'a>(&self) -> Check<HullGraph<'a, Self::Word>>;
+}
+
+impl Hull for qdist_hull_f64 {
+    type Word = u16;
     #[inline(always)]
-    unsafe fn graph<'a>(&self) -> Check<HullGraph<'a>> {
+    fn points(&self) -> &qdist_points_f64 {
+        &self.points
+    }
+    #[inline(always)]
+    unsafe fn open<'a>(&self) -> Check<HullGraph<'a>> {
         // SAFETY: the caller's promise.
         HullGraph::from_words(unsafe { array(self.graph, Some(self.graph_len as usize)) }?).ok_or(QDIST_ERROR_ARGUMENT)
     }
+}
+
+impl Hull for qdist_hull_large_f64 {
+    type Word = u32;
+    #[inline(always)]
+    fn points(&self) -> &qdist_points_f64 {
+        &self.points
+    }
+    #[inline(always)]
+    unsafe fn open<'a>(&self) -> Check<HullGraph<'a, u32>> {
+        // SAFETY: the caller's promise.
+        HullGraph::from_words(unsafe { array(self.graph, Some(self.graph_len as usize)) }?).ok_or(QDIST_ERROR_ARGUMENT)
+    }
+}
+
+/// [`qdist_hull_prepare_until_f64`].
+///
+/// # Safety
+/// What the header asks of the caller.
+unsafe fn prepare_until(
+    hull: *mut qdist_hull_f64,
+    points: *const f64,
+    count: u32,
+    graph: *mut u16,
+    graph_capacity: u32,
+    solver: *mut qdist_solver,
+    deadline: Deadline,
+) -> Check {
+    aligned(hull)?;
+    aligned(graph)?;
+    let list = qdist_points_f64 { points, count, dimension: 3 };
+    // SAFETY: the caller's promise.
+    let (coordinates, mut solver) = unsafe { (list.coordinates()?, handle::open::<f64, 3>(solver)?) };
+    // Checked before the first word is written.
+    if (graph_capacity as usize) < graph_len(count as usize) {
+        return Err(QDIST_ERROR_WORKSPACE_SIZE);
+    }
+    // SAFETY: the caller's promise: as many words, which nothing else refers to. They need no initial value, but a reference
+    // does.
+    let words = unsafe {
+        graph.write_bytes(0, graph_capacity as usize);
+        core::slice::from_raw_parts_mut(graph, graph_capacity as usize)
+    };
+    deadline
+        .during(|interrupt| solver.prepare_hull_until(as_points(coordinates), words, interrupt).map(|_| ()))
+        .map_err(from_graph)?;
+    // SAFETY: checked.
+    unsafe { put(hull, qdist_hull_f64 { points: list, graph, graph_len: graph_capacity }) };
+    Ok(())
 }
 
 /// A set, its center and its spread about that, and its extents and errors along the axes.
@@ -314,13 +494,13 @@ pub(super) unsafe fn scan<const FAR: bool, const N: usize>(
 /// # Safety
 /// Those of a support function.
 #[inline(always)]
-unsafe fn climb<const FAR: bool>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
+unsafe fn climb<const FAR: bool, H: Hull>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
     // SAFETY: the caller's promise.
     let (list, graph, u, room) = unsafe {
-        let (hull, u, room) = arguments::<qdist_hull_f64, 3>(user, direction, point)?;
-        (hull.points.list()?, hull.graph()?, u, room)
+        let (hull, u, room) = arguments::<H, 3>(user, direction, point)?;
+        (hull.points().list()?, hull.open()?, u, room)
     };
     // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.climb::<FAR>(&graph, &near_unit(one_by_one(u)))) };
+    unsafe { room.write(*list.climb::<FAR, H::Word>(&graph, &near_unit(one_by_one(u)))) };
     Ok(())
 }
