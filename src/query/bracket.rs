@@ -177,6 +177,21 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         self.height + self.bounds.radius <= self.margin_along(&self.direction) * T::count(64)
     }
 
+    /// Is the lower end at 0 all that is left to find out? So it is as soon as a height of A is within its rounding of 0: no surface proves
+    /// more than d >= 0 then. (Along a direction in which Q has next to no extent that says nothing of d.)
+    pub fn is_spent(&self) -> bool {
+        let wide = || self.inner_radius() > T::zero() || self.gauge * T::count(16) >= self.widest;
+        self.spent
+            || self.height + self.bounds.radius <= self.margin_along(&self.direction)
+                && !self.apart
+                && (self.ball.is_some() || wide())
+    }
+
+    /// Says so, for other reasons.
+    pub fn spend(&mut self) {
+        self.spent = true;
+    }
+
     /// Is this bracket about as narrow as rounding allows?
     pub fn is_tight(&self, bracket: &Bracket<T>) -> bool {
         bracket.upper - bracket.lower <= self.margin() * T::count(64) * self.per_ball
