@@ -178,13 +178,16 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     }
 
     /// Is the lower end at 0 all that is left to find out? So it is as soon as a height of A is within its rounding of 0: no surface proves
-    /// more than d >= 0 then. (Along a direction in which Q has next to no extent that says nothing of d.)
+    /// more than d >= 0 then. (Not along a direction in which Q has next to no extent, which says nothing of d; and a threshold so small may still be
+    /// decided by a lower height.)
     pub fn is_spent(&self) -> bool {
-        let wide = || self.inner_radius() > T::zero() || self.gauge * T::count(16) >= self.widest;
-        self.spent
-            || self.height + self.bounds.radius <= self.margin_along(&self.direction)
-                && !self.apart
-                && (self.ball.is_some() || wide())
+        let nothing = self.height + self.bounds.radius <= self.margin_along(&self.direction) && !self.apart;
+        self.spent || nothing && self.options.threshold.is_none() && self.is_wide()
+    }
+
+    /// Is Q about as wide along the best direction as elsewhere?
+    fn is_wide(&self) -> bool {
+        self.inner_radius() > T::zero() || self.gauge * T::count(16) >= self.widest
     }
 
     /// Says so, for other reasons.
