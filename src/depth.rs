@@ -593,22 +593,26 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Option<Answer<T, N>> {
         let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
-        let [a, b] = [pair.a, pair.b].map(|body| Measured::new(body.shape, T::zero()));
+        let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
+        let [a, b] = [(pair.a, asks[0]), (pair.b, asks[1])]
+            .map(|(body, asks)| if asks { Measured::new(body.shape) } else { None });
         let measured = a.is_some() || b.is_some();
+        let asked = if asks[0] || asks[1] { Measured::<T, N>::CALLS } else { 0 };
+        let calls = answer.support_calls.saturating_add(asked);
         if !measured {
             // (The first product says at once that the offset's own rounding leaves nothing to gain.)
             let n = &answer.direction;
             let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
             let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
             if !finer && answer.outcome != Outcome::Degenerate {
-                return None;
+                return (asked > 0).then(|| Answer { support_calls: calls, ..answer.clone() });
             }
         }
-        let calls = answer.support_calls.saturating_add(if measured { 2 * N as u32 } else { 0 });
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
-        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), measured)?;
-        Some(second.or_wider(answer))
+        let calls = calls.saturating_add(sharper.calls());
+        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), measured);
+        Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }
 }
 

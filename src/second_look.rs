@@ -29,19 +29,23 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return answer;
         }
         let Some(options) = options.after(answer.iterations) else { return answer };
-        let measured = Measured::new(a, answer.reach());
-        let calls = answer.support_calls + if measured.is_some() { 2 * N as u32 } else { 0 };
+        let asks = Measured::may_gain(a, answer.reach());
+        let measured = if asks { Measured::new(a) } else { None };
+        let calls = answer.support_calls.saturating_add(if asks { Measured::<T, N>::CALLS } else { 0 });
         let set = measured.as_ref().map_or(a, |measured| measured);
         match run(self, set, options, measured.is_some()) {
             Some(second) => {
-                Answer { support_calls: second.support_calls.saturating_add(calls), ..second }.or_wider(&answer)
+                let support_calls = second.support_calls.saturating_add(calls);
+                Answer { support_calls, ..second }.or_wider(&answer)
             }
-            None => answer,
+            None => Answer { support_calls: calls, ..answer },
         }
     }
 
     /// Makes a query ready for a second look; false when that would show nothing new.
     pub(crate) fn sharpen(&self, query: &mut Query<'_, T, N>, checked: Result<(), Failure>, measured: bool) -> bool {
-        checked.and_then(|()| query.normalize()).is_ok() && (query.look_by_direction() || measured)
+        // (A set of unknown extent says nothing by direction, and would be asked for its size once more.)
+        let known = query.knows_extent() || measured;
+        known && checked.and_then(|()| query.normalize()).is_ok() && (query.look_by_direction() || measured)
     }
 }

@@ -31,7 +31,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     /// The same with margins by direction.
     #[cold]
     fn lower_by_axes(&self, axes: &Axes<T, N>, simplex: &Simplex<T, N>, distance: T) -> T {
-        let line = if distance > T::TINY { simplex.towards_origin(distance, self.reach) } else { self.direction };
+        // Nearer than that, the point has no direction.
+        let line = if distance > self.margin() { simplex.towards_origin(distance, self.reach) } else { self.direction };
         let crossing = self.highest_crossing(simplex, &line);
         let crossing =
             crossing.map_or(-T::HUGE, |height| self.bounds.lower_ball(-height, axes.margin(&line), self.per_ball));
@@ -53,9 +54,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         let across = |v: &Vector<T, N>| v - line * line.dot(v);
         let seen = |corner: &Corner<T, N>| across(&corner.vertex.point);
         let safe = self.margin() * T::count(3) + norm(&across(&simplex.point()));
+        // A corner that only rounding gives a weight is none.
+        let corners = || simplex.corners.iter().filter(|c| c.weight > T::count(64) * T::ROUNDOFF).enumerate();
         let mut highest = T::zero();
-        for (i, corner) in simplex.corners.iter().enumerate() {
-            let mut others = simplex.corners.iter().enumerate().filter(|&(j, _)| j != i).map(|(_, other)| seen(other));
+        for (i, corner) in corners() {
+            let mut others = corners().filter(|&(j, _)| j != i).map(|(_, other)| seen(other));
             let base = others.next()?;
             let mut side = Edges::<T, N>::new();
             for other in others {
@@ -67,7 +70,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             }
             highest = highest.at_least(line.dot(&corner.vertex.point).abs());
         }
-        (simplex.corners.len() == N).then_some(highest)
+        (corners().count() == N).then_some(highest)
     }
 
     /// Lower bound from the lowest offset of a closed surface around the origin, for a ball; `None` when the origin is

@@ -482,6 +482,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.axes.as_ref().map_or(margin, |axes| axes.margin(direction).at_most(margin))
     }
 
+    /// Does A state its extent?
+    pub fn knows_extent(&self) -> bool {
+        self.extent > T::zero()
+    }
+
     /// Takes margins by direction from now on, if that gains anything: where A is long and flat along the coordinate axes (a floor), heights
     /// across are known much better. The query has been made ready.
     pub fn look_by_direction(&mut self) -> bool {

@@ -14,14 +14,19 @@ pub(crate) struct Measured<'a, T, const N: usize> {
 }
 
 impl<'a, T: Real, const N: usize> Measured<'a, T, N> {
-    /// Measures a set whose points were seen no farther out than `reach`. `None` where that can gain nothing: the extent is not loose, not
-    /// stated, or the error does not hang on it.
-    pub fn new(set: &'a dyn Support<T, N>, reach: T) -> Option<Self> {
+    /// The support calls that it takes to measure a set.
+    pub const CALLS: u32 = 2 * N as u32;
+
+    /// May a set be worth measuring whose points were seen no farther out than `reach`? Not where its error does not hang on the extent.
+    pub fn may_gain(set: &dyn Support<T, N>, reach: T) -> bool {
         let stated = set.extent();
         let by_default = set.error() == T::count(16 * N) * T::ROUNDOFF * stated && set.center().is_none();
-        if !(by_default && stated > reach + reach) {
-            return None;
-        }
+        by_default && stated > reach + reach
+    }
+
+    /// Measures a set; `None` where the extent that it states is not loose.
+    pub fn new(set: &'a dyn Support<T, N>) -> Option<Self> {
+        let stated = set.extent();
         let mut extents = Vector::<T, N>::zeros();
         for i in 0..N {
             for sign in [T::one(), -T::one()] {
