@@ -166,13 +166,9 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     /// Extents and errors along the axes of the world.
     fn axes(&self, anchor: &Anchor<T, N>) -> Axes<T, N> {
         let (mut extents, mut errors) = (self.shape.extents(), self.shape.errors());
-        if anchor.center.is_some() {
+        if anchor.center.is_some() || !(self.shape.extent() > T::zero()) {
             extents = Vector::repeat(anchor.extent);
-        } else if !(self.shape.extent() > T::zero()) {
-            // What they would be, had the shape known its extent.
-            let rounding = T::count(16 * N) * T::ROUNDOFF;
-            extents = self.corner().unwrap_or(Vector::repeat(anchor.extent));
-            errors = errors.zip_map(&extents, |e, x| e.at_least(rounding * x));
+            errors = errors.map(|e| if self.shape.extent() > T::zero() { e } else { e.at_least(anchor.error) });
         }
         let swollen = self.inflation * T::count(8) * T::ROUNDOFF;
         let reach = spread(&self.rotation, &extents.add_scalar(self.inflation));
@@ -611,7 +607,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
         let calls = calls.saturating_add(sharper.calls());
-        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), measured);
+        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
         Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }
 }

@@ -11,7 +11,7 @@
 
 use crate::answer::Answer;
 use crate::query::{Options, Query};
-use crate::scalar::Real;
+use crate::scalar::{Real, Vector, unit};
 use crate::solver::Solver;
 use crate::support::{Failure, Measured, Support};
 
@@ -23,7 +23,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         answer: Answer<T, N>,
         a: &dyn Support<T, N>,
         options: &Options<T, N>,
-        run: impl FnOnce(&mut Self, &dyn Support<T, N>, Options<T, N>, bool) -> Option<Answer<T, N>>,
+        run: impl FnOnce(&mut Self, &dyn Support<T, N>, Options<T, N>, &Vector<T, N>, bool) -> Option<Answer<T, N>>,
     ) -> Answer<T, N> {
         if !answer.outcome.is_open() {
             return answer;
@@ -33,7 +33,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let measured = if asks { Measured::new(a) } else { None };
         let calls = answer.support_calls.saturating_add(if asks { Measured::<T, N>::CALLS } else { 0 });
         let set = measured.as_ref().map_or(a, |measured| measured);
-        match run(self, set, options, measured.is_some()) {
+        match run(self, set, options, &answer.direction, measured.is_some()) {
             Some(second) => {
                 let support_calls = second.support_calls.saturating_add(calls);
                 Answer { support_calls, ..second }.or_wider(&answer)
@@ -42,10 +42,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
     }
 
-    /// Makes a query ready for a second look; false when that would show nothing new.
-    pub(crate) fn sharpen(&self, query: &mut Query<'_, T, N>, checked: Result<(), Failure>, measured: bool) -> bool {
+    /// Makes a query ready for a second look, after an answer with this direction; false when it would show nothing new.
+    pub(crate) fn sharpen(
+        &self,
+        query: &mut Query<'_, T, N>,
+        checked: Result<(), Failure>,
+        first: &Vector<T, N>,
+        measured: bool,
+    ) -> bool {
         // (A set of unknown extent says nothing by direction, and would be asked for its size once more.)
         let known = query.knows_extent() || measured;
-        known && checked.and_then(|()| query.normalize()).is_ok() && (query.look_by_direction() || measured)
+        if !(known && checked.and_then(|()| query.normalize()).is_ok() && (query.look_by_direction() || measured)) {
+            return false;
+        }
+        // What rounding tilts a normal by is little, but costs the length of a floor: it is asked along the axes as well.
+        let along = first.map(|x| if x.abs() < T::of(1e-2) { T::zero() } else { x });
+        let whole = along.iter().any(|&x| x != T::zero());
+        !(query.axes.is_some() && whole) || query.support(&unit(&along)).is_ok()
     }
 }

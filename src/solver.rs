@@ -95,11 +95,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             Ok(None) => self.decide(&mut query),
             Err(failure) => return self.give_up(&mut query, failure),
         };
-        self.look_again(answer, set, options, |solver, set, options, measured| {
+        self.look_again(answer, set, options, |solver, set, options, first, measured| {
             let (mut query, checked) = Query::new(set, q, radius, options);
             query.interrupt = interrupt;
             solver.polytope.reset();
-            solver.sharpen(&mut query, checked, measured).then(|| solver.decide(&mut query))
+            solver.sharpen(&mut query, checked, first, measured).then(|| solver.decide(&mut query))
         })
     }
 
@@ -126,8 +126,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_gauge(q);
         let answer = self.expand_only(Query::new(set, q, radius, *options));
-        self.look_again(answer, set, options, |solver, set, options, measured| {
-            solver.expand_sharper(Query::new(set, q, radius, options), measured)
+        self.look_again(answer, set, options, |solver, set, options, first, measured| {
+            solver.expand_sharper(Query::new(set, q, radius, options), first, measured)
         })
     }
 
@@ -142,9 +142,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub(crate) fn expand_sharper(
         &mut self,
         (mut query, checked): (Query<'_, T, N>, Result<(), Failure>),
+        first: &Vector<T, N>,
         measured: bool,
     ) -> Option<Answer<T, N>> {
-        self.sharpen(&mut query, checked, measured).then(|| self.expand_ready(&mut query))
+        self.sharpen(&mut query, checked, first, measured).then(|| self.expand_ready(&mut query))
     }
 
     #[inline(always)]

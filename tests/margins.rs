@@ -81,7 +81,7 @@ fn a_floor_of_a_kilometre_in_single_precision() {
     for l in [1.0, 10.0, 100.0, 1000.0, 10000.0] {
         let (d, truth) = on_the_floor::<f32>(l, 0.1, 0, 0.01, 1e-3, [0.3 * l, 0.1], 0, 0);
         check(&d, truth, 1e-9);
-        assert!(f64::from(d.upper - d.lower) < 0.01 * truth, "{l} {d:?}");
+        assert!(f64::from(d.upper - d.lower) < 1e-6, "{l} {d:?}");
     }
 }
 
@@ -126,7 +126,7 @@ fn a_small_box_through_a_wide_triangle() {
         let truth = f64::from(half) - f64::from(z).abs();
         check(&d, truth, 1e-9);
         assert!(
-            d.outcome != Outcome::Degenerate && f64::from(d.upper - d.lower) < 1e-5 * f64::from(half),
+            d.outcome != Outcome::Degenerate && f64::from(d.upper - d.lower) < 1e-4 * f64::from(half),
             "{k} {l} {d:?}"
         );
     }

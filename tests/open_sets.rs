@@ -131,7 +131,14 @@ fn one_wrench_of_an_open_grasp() {
                         let (least, most) = (1.0 / forces.upper, 1.0 / forces.lower);
                         assert!(answer.lower <= most * (1.0 + 1e-7), "{case} {} {most}", answer.lower);
                         assert!(answer.upper >= least * (1.0 - 1e-7), "{case} {} {least}", answer.upper);
-                        assert!(answer.upper <= most * (1.0 + 1e-5), "{case} {} {most}", answer.upper);
+                        assert!(
+                            answer.upper <= most * (1.0 + 1e-5),
+                            "{case} {} {most} {:?} {:?} {}",
+                            answer.upper,
+                            answer.outcome,
+                            answer.plan,
+                            answer.lower
+                        );
                         narrow += u32::from(answer.upper - answer.lower <= 1e-5 * answer.upper);
                     }
                     ForceOutcome::NotResistible => {

@@ -8,6 +8,7 @@
 //!   makes about k^2 of them; in five and six dimensions k^3 / N, unless the ray has ended on a facet of A itself (measured on
 //!   octahedra, random points, boxes, ellipsoids and wrench sets: mostly within a factor of 3). Later rays start from the simplex before and take
 //!   about k / 3 + 3 steps; where Q says nothing about some directions, N + 1 more rays are needed.
+//! * **Few vertices**, no more than a box has, are left to the rays, which take no memory of the workspace.
 //! * **Turns.** The plan that is expected to be cheaper begins, and may do as much work as the other is expected to need. Then the
 //!   other has its turn, and so on, each with twice as much as before. Both stop where they are and go on from there, and each
 //!   knows the other's upper bounds.
@@ -42,7 +43,7 @@ pub(crate) fn race<T: Real, const N: usize>(
     let by_rays = rays.left(query).saturating_mul(ray_cost(steps, query));
     let by_expansion = expansion_cost::<N>(steps, rays.landed(), query.work.gauge());
     let mut share = by_rays.max(by_expansion);
-    let mut expands = by_expansion < by_rays;
+    let mut expands = by_expansion < by_rays && query.rays() > 1 << N;
     loop {
         query.work.allow(share);
         if expands {
