@@ -155,7 +155,7 @@ impl<T: Real, const N: usize> Axes<T, N> {
 
     /// Is something known much better along one of the axes than `margin` says?
     pub fn are_uneven(&self, margin: T) -> bool {
-        (0..N).any(|i| (self.errors[i] + T::count(2 * N + 4) * T::ROUNDOFF * self.reach[i]) * T::count(8) < margin)
+        (0..N).any(|i| (self.errors[i] + T::count(2 * N + 4) * T::ROUNDOFF * self.reach[i]) * T::count(4) < margin)
     }
 }
 

@@ -593,20 +593,21 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let [a, b] = [(pair.a, asks[0]), (pair.b, asks[1])]
             .map(|(body, asks)| if asks { Measured::new(body.shape) } else { None });
         let measured = a.is_some() || b.is_some();
-        let asked = if asks[0] || asks[1] { Measured::<T, N>::CALLS } else { 0 };
-        let calls = answer.support_calls.saturating_add(asked);
+        let asked = asks.map(|asks| if asks { Measured::<T, N>::CALLS } else { 0 });
         if !measured {
             // (The first product says at once that the offset's own rounding leaves nothing to gain.)
             let n = &answer.direction;
             let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
             let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
             if !finer && answer.outcome != Outcome::Degenerate {
-                return (asked > 0).then(|| Answer { support_calls: calls, ..answer.clone() });
+                let calls = answer.support_calls.saturating_add(asked[0].max(asked[1]));
+                return Some(Answer { support_calls: calls, ..answer.clone() });
             }
         }
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
-        let calls = calls.saturating_add(sharper.calls());
+        let [of_a, of_b] = [asked[0] + sharper.on_a.calls, asked[1] + sharper.on_b.calls];
+        let calls = answer.support_calls.saturating_add(of_a.max(of_b));
         let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
         Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }

@@ -8,7 +8,7 @@
 //!   makes about k^2 of them; in five and six dimensions k^3 / N, unless the ray has ended on a facet of A itself (measured on
 //!   octahedra, random points, boxes, ellipsoids and wrench sets: mostly within a factor of 3). Later rays start from the simplex before and take
 //!   about k / 3 + 3 steps; where Q says nothing about some directions, N + 1 more rays are needed.
-//! * **Few vertices**, no more than a box has, are left to the rays, which take no memory of the workspace.
+//! * **Few vertices**, no more than a box of six dimensions has, are left to the rays, which take no memory of the workspace.
 //! * **Turns.** The plan that is expected to be cheaper begins, and may do as much work as the other is expected to need. Then the
 //!   other has its turn, and so on, each with twice as much as before. Both stop where they are and go on from there, and each
 //!   knows the other's upper bounds.
@@ -20,6 +20,9 @@ use crate::polytope::Polytope;
 use crate::query::{Query, Work};
 use crate::scalar::Real;
 use crate::support::Failure;
+
+/// So many vertices of Q are left to the rays.
+const FEW: usize = 64;
 
 /// Which plan has answered.
 pub(crate) enum Ended<T, const N: usize> {
@@ -34,6 +37,11 @@ pub(crate) fn race<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     let mut rays = RaySearch::new(query)?;
+    if query.rays() <= FEW {
+        query.work.allow(u64::MAX);
+        let found = rays.advance(query)?.flatten();
+        return finish(polytope, query, found);
+    }
     let before = query.support_calls();
     query.work.allow(0); // one ray
     if let Some(found) = rays.advance(query)? {
@@ -43,7 +51,7 @@ pub(crate) fn race<T: Real, const N: usize>(
     let by_rays = rays.left(query).saturating_mul(ray_cost(steps, query));
     let by_expansion = expansion_cost::<N>(steps, rays.landed(), query.work.gauge());
     let mut share = by_rays.max(by_expansion);
-    let mut expands = by_expansion < by_rays && query.rays() > 1 << N;
+    let mut expands = by_expansion < by_rays;
     loop {
         query.work.allow(share);
         if expands {
