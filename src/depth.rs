@@ -594,20 +594,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             .map(|(body, asks)| if asks { Measured::new(body.shape) } else { None });
         let measured = a.is_some() || b.is_some();
         let asked = asks.map(|asks| if asks { Measured::<T, N>::CALLS } else { 0 });
+        // Those of the body that was asked more often: the query's, which are both bodies', and those that measured it.
+        let both = answer.support_calls.saturating_sub(pair.calls());
+        let measuring = [pair.on_a.calls + asked[0], pair.on_b.calls + asked[1]];
+        let total = |more: [u32; 2]| both.saturating_add((measuring[0] + more[0]).max(measuring[1] + more[1]));
         if !measured {
             // (The first product says at once that the offset's own rounding leaves nothing to gain.)
             let n = &answer.direction;
             let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
             let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
             if !finer && answer.outcome != Outcome::Degenerate {
-                let calls = answer.support_calls.saturating_add(asked[0].max(asked[1]));
-                return Some(Answer { support_calls: calls, ..answer.clone() });
+                return Some(Answer { support_calls: total([0, 0]), ..answer.clone() });
             }
         }
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
-        let [of_a, of_b] = [asked[0] + sharper.on_a.calls, asked[1] + sharper.on_b.calls];
-        let calls = answer.support_calls.saturating_add(of_a.max(of_b));
+        let calls = total([sharper.on_a.calls, sharper.on_b.calls]);
         let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
         Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }

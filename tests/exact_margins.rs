@@ -95,7 +95,11 @@ fn run<T: Real>(seed: u64) {
             let mut large = Workspace::<T, 3, 64, 128>::new();
             let answer = large.solver().solve(&set, q, &options);
             holds(answer.lower, answer.upper, d, &format!("{name} {what}"));
-            plans[usize::from(answer.plan == Plan::Rays)] += 1;
+            plans[0] += usize::from(answer.plan == Plan::Expansion);
+            // Rays end where the tolerance is met.
+            let answer = large.solver().solve(&set, q, &Options::default());
+            holds(answer.lower, answer.upper, d, &format!("{name} by default {what}"));
+            plans[1] += usize::from(answer.plan == Plan::Rays);
             let answer = large.solver().solve_by_expansion(&set, q, &options);
             holds(answer.lower, answer.upper, d, &format!("{name} by expansion {what}"));
             // Too small for the polytope: cone by cone.
