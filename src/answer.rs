@@ -158,16 +158,12 @@ pub(crate) enum Stop {
     /// The origin is certainly outside.
     Outside,
     Rounding,
-    /// A height of A is 0, up to rounding: so is d.
-    Zero,
     Above,
     Below,
     Capacity,
     Iterations,
     Interrupted,
     Flat,
-    /// It is another plan's turn: the end of no query.
-    Turn,
     Failed(i32),
 }
 
@@ -181,9 +177,9 @@ impl Stop {
             Stop::Below => Outcome::Below,
             _ if upper < zero => Outcome::Separated,
             Stop::Flat if lower <= zero => Outcome::Degenerate,
-            Stop::Met | Stop::Rounding | Stop::Zero if at_zero => Outcome::Touching,
+            Stop::Met | Stop::Rounding if at_zero => Outcome::Touching,
             _ if met && lower > zero => Outcome::Converged,
-            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Zero | Stop::Flat | Stop::Turn => Outcome::Precision,
+            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Flat => Outcome::Precision,
             Stop::Capacity => Outcome::Capacity,
             Stop::Iterations => Outcome::Iterations,
             Stop::Interrupted => Outcome::Interrupted,

@@ -4,8 +4,7 @@ use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
 use crate::distance::{Cloud, Inflated, Nearest, nearest};
 use crate::plan::expansion::Expanded;
-use crate::plan::race::{Ended, race};
-use crate::plan::rays::Crossings;
+use crate::plan::rays::solve_rays;
 use crate::polytope::Polytope;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
@@ -23,35 +22,20 @@ pub struct Solver<'w, T, const N: usize> {
 
 /// What is known when the plans that any query begins with have had their say.
 struct Opening<T, const N: usize> {
-    end: End<T, N>,
+    /// The expansion's end; or, with no expansion, that of the distance iteration, which decided.
+    expanded: Result<Expanded<T>, Stop>,
     /// The point of A nearest to the origin, where A has a ball term.
     near: Option<Nearest<T, N>>,
-}
-
-/// Which plan came to an end.
-enum End<T, const N: usize> {
-    /// Expansion.
-    Expanded(Expanded<T>),
-    /// The distance iteration, which decided.
-    Near(Stop),
-    /// Rays, which decided.
-    Crossed(Crossings<T, N>),
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The generalized penetration distance d_Q(A) = max { λ : λQ ⊂ A } of the origin in A.
     ///
     /// The plan is chosen by what the query is, and told in [`Answer::plan`]:
-    /// * a polytope is expanded, best first (Algorithm 1);
-    /// * a polytopal Q may take one ray per vertex of Q instead, and next to no memory: which of the two is cheaper is guessed from the first
-    ///   ray, and where the guess is wrong they take turns;
+    /// * a polytopal Q takes one ray per vertex of Q, and no memory of the workspace;
+    /// * otherwise a polytope is expanded, best first (Algorithm 1);
     /// * when it outgrows the memory, d is searched cone by cone in the same memory. That converges, given the iterations, with any
     ///   capacity of at least 4 N facets and 3 N vertices; with N = 6, 512 facets and 64 vertices are a sensible least.
-    ///
-    /// Where a height of A is 0 up to rounding, as for a grasp that is open, d is 0 and the query is over: `lower` is 0 where the set
-    /// [contains the origin](Support::contains_origin) by definition, else what its nearest point shows. A [`Segment`](crate::qset::Segment) asks for its own
-    /// direction only, and may have d > 0 there; how much of one that runs along the boundary of A is in A is not for arithmetic to tell: 0 <= d <=
-    /// `upper`. ([`solve_in_span`](Self::solve_in_span) for sets that are flat.)
     ///
     /// With a Euclidean Q, A's ball term is taken out exactly, and a negative answer is minus the distance.
     ///
@@ -105,8 +89,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// The plan for a query that has been made ready.
     fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
-        match self.open(query, choose) {
-            Ok(Opening { end: End::Expanded(expanded), near }) if expanded.stop == Stop::Capacity => {
+        let rays = match solve_rays(query) {
+            Ok(rays) => rays,
+            Err(failure) => return self.give_up(query, failure),
+        };
+        if let Some(rays) = rays {
+            query.plan = Plan::Rays;
+            match rays.stop {
+                // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
+                Stop::Rounding => query.plan = Plan::Expansion,
+                Stop::Iterations | Stop::Interrupted => {}
+                stop => return query.answer(stop, rays.lower, rays.witness),
+            }
+            query.raise(rays.lower);
+        }
+        match self.open(query) {
+            Ok(Opening { expanded: Ok(expanded), near }) if expanded.stop == Stop::Capacity => {
                 self.solve_cones(query, expanded, near)
             }
             Ok(opening) => self.close(query, opening),
@@ -151,7 +149,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     #[inline(always)]
     fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
-        match self.open(query, expand) {
+        match self.open(query) {
             Ok(opening) => self.close(query, opening),
             Err(failure) => self.give_up(query, failure),
         }
@@ -159,22 +157,17 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// The answer after the opening.
     fn close(&mut self, query: &mut Query<'_, T, N>, opening: Opening<T, N>) -> Answer<T, N> {
-        match (opening.end, opening.near) {
-            (End::Expanded(expanded), near) => self.conclude(query, expanded, near),
-            (End::Near(stop), near) => {
+        match (opening.expanded, opening.near) {
+            (Ok(expanded), near) => self.conclude(query, expanded, near),
+            (Err(stop), near) => {
                 query.plan = Plan::Distance;
                 self.lower_by_vertices(query, stop, near)
             }
-            (End::Crossed(rays), _) => query.answer(rays.stop, rays.lower, rays.witness),
         }
     }
 
-    /// Distance where that decides; else the first simplex, and the plan that it is for.
-    fn open(
-        &mut self,
-        query: &mut Query<'_, T, N>,
-        plan: impl FnOnce(&mut Polytope<'_, T, N>, &mut Query<'_, T, N>) -> Result<End<T, N>, Failure>,
-    ) -> Result<Opening<T, N>, Failure> {
+    /// Distance where that decides, else expansion.
+    fn open(&mut self, query: &mut Query<'_, T, N>) -> Result<Opening<T, N>, Failure> {
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
         let mut floor = None;
@@ -183,15 +176,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let bracket =
                 Bracket { lower: query.lower_from_simplex(&near.simplex, near.distance), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
-                return Ok(Opening { end: End::Near(stop), near: Some(near) });
+                return Ok(Opening { expanded: Err(stop), near: Some(near) });
             }
             floor = Some(near);
         }
-        let end = match self.polytope.start(query, &first)? {
-            None => plan(&mut self.polytope, query)?,
-            Some(stop) => End::Expanded(Expanded { stop, key: -T::HUGE, facet: None }),
+        let expanded = match self.polytope.start(query, &first)? {
+            None => self.polytope.expand(query)?,
+            Some(stop) => Expanded { stop, key: -T::HUGE, facet: None },
         };
-        Ok(Opening { end, near: floor })
+        Ok(Opening { expanded: Ok(expanded), near: floor })
     }
 
     /// Cone by cone, after the polytope has outgrown the memory.
@@ -265,7 +258,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
-        if !apart && stop != Stop::Zero && self.polytope.facets().next().is_some() {
+        if !apart && self.polytope.facets().next().is_some() {
             if let Err(failure) = self.polytope.widen(query, stop, key) {
                 return self.give_up(query, failure);
             }
@@ -278,10 +271,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 return self.report(query, stop, lower, witness);
             }
         }
-        // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end, unless that is the origin.
-        let is_known = !apart && matches!(stop, Stop::Zero | Stop::Flat) && query.contains_origin();
-        let is_cut_short = matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted);
-        if query.bounds.radius == T::zero() && !is_known && !is_cut_short {
+        // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end.
+        if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted) {
             let first = if apart { query.direction } else { query.first_direction() };
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
@@ -336,26 +327,4 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
         self.lower_by_vertices(query, Stop::Failed(failure.0), None)
     }
-}
-
-/// Expansion, and nothing else.
-fn expand<T: Real, const N: usize>(
-    polytope: &mut Polytope<'_, T, N>,
-    query: &mut Query<'_, T, N>,
-) -> Result<End<T, N>, Failure> {
-    polytope.expand(query).map(End::Expanded)
-}
-
-/// Expansion; and rays by turns with it where Q is polytopal.
-fn choose<T: Real, const N: usize>(
-    polytope: &mut Polytope<'_, T, N>,
-    query: &mut Query<'_, T, N>,
-) -> Result<End<T, N>, Failure> {
-    if query.rays() == 0 {
-        return expand(polytope, query);
-    }
-    Ok(match race(polytope, query)? {
-        Ended::Rays(rays) => End::Crossed(rays),
-        Ended::Expansion(expanded) => End::Expanded(expanded),
-    })
 }

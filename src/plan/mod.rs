@@ -1,8 +1,7 @@
 //! The plans of a query: what it needs is done, and nothing else.
 //!
 //! ```text
-//!  race                           polytopal Q: rays or expansion, by cost
-//!  rays     conewise  expansion   one ray per vertex; any Q in any memory; Algorithm 1
+//!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
 //!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
 //!      ray                        the simplex that a ray pierces
 //!       basis                     its points, and the inverse of their matrix
@@ -12,7 +11,6 @@ pub(crate) mod basis;
 mod cone;
 mod conewise;
 pub(crate) mod expansion;
-pub(crate) mod race;
 mod ray;
 pub(crate) mod rays;
 pub(crate) mod shoot;

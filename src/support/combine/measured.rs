@@ -73,9 +73,6 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     fn mirrored(&self, signs: u8) -> bool {
         self.set.mirrored(signs)
     }
-    fn contains_origin(&self) -> bool {
-        self.set.contains_origin()
-    }
     fn errors(&self) -> Vector<T, N> {
         self.extents * (T::count(16 * N) * T::ROUNDOFF)
     }
