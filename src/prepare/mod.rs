@@ -74,7 +74,7 @@ pub const fn hull_facets(count: usize) -> usize {
 /// Computes the vertex graph of the hull of `points` into `words`, of 16 or of 32 bits.
 ///
 /// `facets` is workspace: [`hull_facets`] always suffice. `interrupt` is asked at least once for every 1,024 points looked at, and ends
-/// the work by `true`. Points inside the hull, and points in its facets that are no corners, get no edges. Cost: n log n for points
+/// the work by `true`. Points inside the hull get no edges, and few that lie in its facets and are no corners do. Cost: n log n for points
 /// as they come (100,000 on a sphere: half a second); n^2 for some that are made for it.
 ///
 /// ```

@@ -368,12 +368,13 @@ mod tests {
     }
 
     /// Climbing finds a point as high as scanning does, from either end of the range of directions.
-    fn climbs_as_high_as_it_scans(points: &[[f32; 3]], on_hull: usize) {
+    /// `corners` have edges; of points in one plane with them, a few may.
+    fn climbs_as_high_as_it_scans(points: &[[f32; 3]], corners: usize, level: usize) {
         let mut memory = Box::new(crate::Workspace::<f32, 3, 400, 816>::new());
         let mut words = vec![0; graph_len(points.len())];
         let graph = memory.solver().prepare_hull(points, &mut words).unwrap();
         let with_edges = (0..points.len()).filter(|&i| !graph.neighbors(i as u16).is_empty()).count();
-        assert_eq!(with_edges, on_hull);
+        assert!((corners..=corners + level).contains(&with_edges), "{with_edges}");
         let hull = Hull::new(points, graph).unwrap();
         assert!(hull.has_shortcuts());
         for u in noise(2000, 5) {
@@ -396,7 +397,7 @@ mod tests {
             };
             let points: Vec<_> = noise(400, 3).iter().map(round).collect();
             assert_eq!(Points::new(&points).unwrap().center().is_some(), offset > 0.0);
-            climbs_as_high_as_it_scans(&points, 400);
+            climbs_as_high_as_it_scans(&points, 400, 0);
         }
     }
 
@@ -406,7 +407,7 @@ mod tests {
         let grid = (0..125).map(|i| [i % 5, i / 5 % 5, i / 25].map(|k| (k - 2) as f32));
         let mut points: Vec<[f32; 3]> = grid.collect();
         points.sort_by_key(|p| p.iter().filter(|x| x.abs() < 2.0).count());
-        climbs_as_high_as_it_scans(&points, 8);
+        climbs_as_high_as_it_scans(&points, 8, 4);
     }
 
     #[test]
