@@ -112,7 +112,10 @@ impl<T: Real, const N: usize> Answer<T, N> {
     pub(crate) fn or_wider(self, first: &Self) -> Self {
         let support_calls = self.support_calls;
         let iterations = self.iterations.saturating_add(first.iterations);
-        let better = if self.upper - self.lower <= first.upper - first.lower { self } else { first.clone() };
+        // What is flat stays so, unless d is certainly another.
+        let flat = first.outcome == Outcome::Degenerate && self.lower <= T::zero() && self.upper >= T::zero();
+        let narrower = self.upper - self.lower <= first.upper - first.lower;
+        let better = if narrower && !flat { self } else { first.clone() };
         Answer { support_calls, iterations, ..better }
     }
 

@@ -373,7 +373,7 @@ const AXIS_ROUNDOFFS: usize = 64;
 impl<T: Real> Pair<'_, '_, T, 3> {
     /// The axis that both bodies turn about, if there is one up to rounding; the deviation goes into `error`.
     fn common_axis(&mut self) -> Option<Vector<T, 3>> {
-        let axis = |body: &Body<'_, T>| Vector::<T, 3>::from(body.rotation.column(2));
+        let axis = |body: &Body<'_, T>| body.rotation.column(2).into_owned();
         let (first, second) = match (self.a.shape.symmetry(), self.b.shape.symmetry()) {
             (Symmetry::Axis, Symmetry::Axis) => (axis(self.a), axis(self.b)),
             (Symmetry::Axis, Symmetry::Full) => (axis(self.a), axis(self.a)),
@@ -381,8 +381,8 @@ impl<T: Real> Pair<'_, '_, T, 3> {
             _ => return None,
         };
         let allowed = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
-        let largest = |v: Vector<T, 3>| v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
-        let aside = largest(first.cross(&second)).at_least(largest(first.cross(&self.offset)) / self.extent);
+        // The angle, plus the length as a share of the extents.
+        let aside = norm(&first.cross(&second)) + norm(&first.cross(&self.offset)) / self.extent;
         if !(aside <= allowed) || self.on_a.center.is_some() || self.on_b.center.is_some() {
             return None;
         }
@@ -390,9 +390,11 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         if !(stretched <= allowed) {
             return None;
         }
-        // Each deviation moves points of the bodies by at most itself times sqrt(3) and their size; the roundoffs are
-        // those of measuring it.
-        let deviation = (aside + stretched + T::count(4) * T::ROUNDOFF) * T::count(2) * self.extent;
+        // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
+        // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
+        // The roundoffs are those of measuring it.
+        let moved = aside + stretched + stretched + T::count(4) * T::ROUNDOFF;
+        let deviation = moved * T::of(2.1) * self.extent;
         self.error += deviation;
         self.extra += deviation;
         Some(first * (T::one() / norm(&first)))
