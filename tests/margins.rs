@@ -72,7 +72,7 @@ fn on_the_floor<T: Real>(
     let truth = h.to_f64() + half.to_f64() - z.to_f64();
     let a = Body::new(&*ground, turn, Vector::zeros()).unwrap();
     let b = Body::new(&*body, turn, place).unwrap();
-    (if turns % 2 == 0 { depth(&a, &b) } else { depth(&b, &a) }, truth)
+    (if turns.is_multiple_of(2) { depth(&a, &b) } else { depth(&b, &a) }, truth)
 }
 
 /// The margin was a share of the larger body, whatever the direction: a cube 1 mm deep in a floor of a kilometre had [-2.6, 3.5] mm.
