@@ -197,7 +197,7 @@ int main(void) {
     primitives_of_tips();
     at_most("d_Q of a grasp", used(efficiency) - base, 25);
     at_most("force closure", used(closure) - base, 25);
-    at_most("contact forces", used(forces) - base, 11);
+    at_most("contact forces", used(forces) - base, 16);
     at_most("gradients", used(gradients) - base, 20);
     at_most("finger with limits, made", used(make_finger) - base, 80);
     at_most("finger with limits, asked", used(ask_finger) - base, 43);

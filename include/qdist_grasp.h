@@ -328,7 +328,7 @@ qdist_status qdist_best_of6_f64(qdist_solver *solver,
 /* ======================================================== CONTACT FORCES ========================================================
  *
  * The smallest contact forces that resist one given wrench: how a controller distributes a load. Some 30 microseconds for four
- * contacts (`make figures`), no solver and no memory but the stack, 12 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
+ * contacts (`make figures`), no solver and no memory but the stack, 16 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
  * themselves. */
 
 // Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the

@@ -507,7 +507,7 @@ impl<T: Real> Solver<'_, T, 3> {
 impl<T: Real> Solver<'_, T, 2> {
     /// Translational penetration depth of two bodies in the plane, or their distance, as a bracket with witness points.
     ///
-    /// Everything is as in [space](Solver::<T, 3>::depth), with polygons for polyhedra: discs are [`Sphere`](crate::support::Sphere)s, and
+    /// Everything is as in space, with polygons for polyhedra: discs are [`Sphere`](crate::support::Sphere)s, and
     /// what else is generic over the dimension serves. For polygons of m and n vertices, m + n vertices and as many facets suffice.
     ///
     /// ```

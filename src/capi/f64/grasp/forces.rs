@@ -1,7 +1,7 @@
 //! CONTACT FORCES
 //!
 //! The smallest contact forces that resist one given wrench: how a controller distributes a load. Some 30 microseconds for four
-//! contacts (`make figures`), no solver and no memory but the stack, 12 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
+//! contacts (`make figures`), no solver and no memory but the stack, 16 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
 //! themselves.
 
 use super::super::super::generic::{aligned, array, finite, gaps, known_size, length, padded, put, shared};
