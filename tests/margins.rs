@@ -96,7 +96,9 @@ fn floors_of_any_size_and_what_stands_on_them() {
         check(&d, truth, 1e-9);
         // (Two points of a rim and a ball over the line between them: the disc beside the line is not known to the bound.)
         let share = if k / 15 % 3 == 1 { 0.1 } else { 0.01 };
-        assert!(f64::from(d.upper - d.lower) < share * truth, "{k}: {l} {h} {size} {deep} {at:?} {d:?}");
+        // (What is neither long nor flat is measured once, with the margin of the whole.)
+        let whole = if l < 10.0 * h { 4e-5 } else { 0.0 };
+        assert!(f64::from(d.upper - d.lower) < share * truth + whole, "{k}: {l} {h} {size} {deep} {at:?} {d:?}");
         let far = l * 1e6;
         let (d, truth) = on_the_floor::<f64>(far, h, k, size, deep, [at[0] * 1e6, at[1] * 1e6], k / 5, k / 15);
         check(&d, truth, 1e-15);
