@@ -320,6 +320,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The point nearest to the origin of those that are known: the stored vertices' hull, and one from before.
     fn nearest_stored(&self, query: &Query<'_, T, N>, before: Option<Nearest<T, N>>) -> Option<Nearest<T, N>> {
         let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
+        if cloud.vertices.is_empty() {
+            return before;
+        }
         let stored = cloud.nearest(&query.first_direction());
         stored.into_iter().chain(before).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }

@@ -56,12 +56,12 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             let final_facet = (height - offset <= tolerance).then_some(Stop::Rounding);
             let verdict = self.verdict(query, key);
             if let Some(stop) = verdict.or(final_facet) {
-                // That a shortcut does not push the facet out says little: it is asked again without.
+                // That a shortcut does not push the facet out says little: it is asked again without, unless `confirm` has just done that.
                 let blind = verdict.is_none() && query.takes_shortcuts();
                 if !self.confirm(query)? {
                     continue;
                 }
-                if blind {
+                if blind && query.direction != normal {
                     self.reconsider(query);
                     continue;
                 }
