@@ -606,7 +606,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
             let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
             if !finer && answer.outcome != Outcome::Degenerate {
-                return Some(Answer { support_calls: total([0, 0]), ..answer.clone() });
+                return (asked != [0; 2]).then(|| Answer { support_calls: total([0, 0]), ..answer.clone() });
             }
         }
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
