@@ -78,12 +78,13 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
         translation: Vector<T, N>,
     ) -> Result<Self, BodyError> {
         const { assert!(N == 2 || N == 3, "bodies are of dimension 2 or 3") };
-        if !rotation.iter().all(|x| x.finite()) || !finite(&translation) {
+        if !finite(&translation) {
             return Err(BodyError::NonFinite);
         }
         let skew = skew(&rotation);
-        if !(skew <= T::of(1e-4)) || is_reflection(&rotation) {
-            return Err(BodyError::Rotation);
+        if !(skew <= T::of(1e-4)) || !is_proper(&rotation) {
+            let numbers = rotation.iter().all(|x| x.finite());
+            return Err(if numbers { BodyError::Rotation } else { BodyError::NonFinite });
         }
         let mut body = Body { rotation, ..Body::at(shape, translation) };
         if skew > T::count(SKEW_ROUNDOFFS) * T::ROUNDOFF {
@@ -230,15 +231,15 @@ fn skew<T: Real, const N: usize>(rotation: &SMatrix<T, N, N>) -> T {
     most
 }
 
-/// Does an almost orthonormal matrix of dimension 2 or 3 turn right into left?
-fn is_reflection<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+/// Does an almost orthonormal matrix of dimension 2 or 3 leave right what is right? (One with NaN in it does not.)
+fn is_proper<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     let minor = |i: usize, j: usize| matrix[(i, 0)] * matrix[(j, 1)] - matrix[(j, 0)] * matrix[(i, 1)];
     let determinant = if N == 2 {
         minor(0, 1)
     } else {
         minor(1, 2) * matrix[(0, 2)] + minor(2, 0) * matrix[(1, 2)] + minor(0, 1) * matrix[(2, 2)]
     };
-    determinant < T::zero()
+    determinant > T::zero()
 }
 
 /// Where a body is measured from: the origin of its frame, or a point near the shape when that is far away.
@@ -300,6 +301,13 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
             seen.dot(&body.shape.errors()) + seen.dot(&body.shape.extents()) * (T::count(13) * T::ROUNDOFF)
         };
         along(self.a) + along(self.b) + self.offset.abs().dot(&n.abs()) * (T::count(4) * T::ROUNDOFF)
+    }
+
+    /// Is a height along this unit vector known much better than in any direction?
+    fn is_finer_along(&self, n: &Vector<T, N>) -> bool {
+        // (The first product says at once that the offset's own rounding leaves nothing to gain.)
+        let aside = self.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < self.error;
+        aside && self.error_along(n) * T::count(4) < self.error
     }
 
     /// Extents and errors along each axis of the world, with E_i = (|R| E)_i in the place of E: the local direction is off by 3 u (|R|^T |u|)_j, which
@@ -590,8 +598,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Option<Answer<T, N>> {
-        let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
         let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
+        let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
+        if !finer && asks == [false; 2] {
+            return None;
+        }
+        let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
         let [a, b] = [(pair.a, asks[0]), (pair.b, asks[1])]
             .map(|(body, asks)| if asks { Measured::new(body.shape) } else { None });
         let measured = a.is_some() || b.is_some();
@@ -600,14 +612,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let both = answer.support_calls.saturating_sub(pair.calls());
         let measuring = [pair.on_a.calls + asked[0], pair.on_b.calls + asked[1]];
         let total = |more: [u32; 2]| both.saturating_add((measuring[0] + more[0]).max(measuring[1] + more[1]));
-        if !measured {
-            // (The first product says at once that the offset's own rounding leaves nothing to gain.)
-            let n = &answer.direction;
-            let aside = pair.offset.dot(n).abs() * (T::count(16) * T::ROUNDOFF) < pair.error;
-            let finer = aside && pair.error_along(n) * T::count(4) < pair.error;
-            if !finer && answer.outcome != Outcome::Degenerate {
-                return (asked != [0; 2]).then(|| Answer { support_calls: total([0, 0]), ..answer.clone() });
-            }
+        if !finer && !measured {
+            return Some(Answer { support_calls: total([0, 0]), ..answer.clone() });
         }
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
