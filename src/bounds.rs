@@ -83,6 +83,13 @@ pub struct Bracket<T> {
     pub upper: T,
 }
 
+impl<T: Real> Bracket<T> {
+    /// In another unit.
+    pub(crate) fn scaled(self, scale: T) -> Self {
+        Bracket { lower: self.lower * scale, upper: self.upper * scale }
+    }
+}
+
 /// When a bracket is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance<T> {

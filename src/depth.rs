@@ -23,7 +23,10 @@ use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
 use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
+mod fine;
 pub(crate) mod half_space;
+
+use fine::{Fine, Recorder};
 
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
@@ -325,16 +328,16 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         self.on_a.calls.max(self.on_b.calls)
     }
 
-    /// The query for the depth, after so many support calls.
+    /// The query for the depth, after so many support calls. `set` is the pair, or stands for it.
     #[inline(always)]
     fn query<'q>(
-        &'q self,
+        set: &'q dyn Support<T, N>,
         ball: &'q Ball<T>,
         calls: u32,
         options: &Options<T, N>,
         interrupt: Option<&'q dyn Fn() -> bool>,
     ) -> (Query<'q, T, N>, Result<(), Failure>) {
-        let (mut query, checked) = Query::new(self, ball, self.radius(), *options);
+        let (mut query, checked) = Query::new(set, ball, set.radius(), *options);
         query.seeks_rivals = false;
         query.interrupt = interrupt;
         query.count_calls(calls);
@@ -580,7 +583,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-pair.offset);
         }
-        let answer = self.expand_only(pair.query(&ball, calls, &options, interrupt));
+        let answer = self.expand_only(Pair::query(pair, &ball, calls, &options, interrupt));
         if !answer.outcome.is_open() {
             return Depth::new(&answer, pair);
         }
@@ -600,7 +603,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Option<Answer<T, N>> {
         let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
         let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
-        if !finer && asks == [false; 2] {
+        let shallow = is_shallow(answer) && Recorder::new(pair).is_some();
+        if !finer && !shallow && asks == [false; 2] {
             return None;
         }
         let (ball, options) = (Ball::unit(), &options.after(answer.iterations)?);
@@ -612,15 +616,40 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let both = answer.support_calls.saturating_sub(pair.calls());
         let measuring = [pair.on_a.calls + asked[0], pair.on_b.calls + asked[1]];
         let total = |more: [u32; 2]| both.saturating_add((measuring[0] + more[0]).max(measuring[1] + more[1]));
-        if !finer && !measured {
+        if !finer && !shallow && !measured {
             return Some(Answer { support_calls: total([0, 0]), ..answer.clone() });
         }
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
         let calls = total([sharper.on_a.calls, sharper.on_b.calls]);
-        let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
-        Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
+        let recorder = if shallow { Recorder::new(&sharper) } else { None };
+        let set: &dyn Support<T, N> = recorder.as_ref().map_or(&sharper, |recorder| recorder);
+        let (mut query, checked) = Pair::query(set, &ball, calls, options, interrupt);
+        let mut ready = (finer || measured) && self.sharpen(&mut query, checked, &answer.direction, measured);
+        if !ready && recorder.is_some() {
+            let checked;
+            (query, checked) = Pair::query(set, &ball, calls, options, interrupt);
+            ready = checked.and_then(|()| query.normalize()).is_ok();
+        }
+        if !ready {
+            return Some(Answer { support_calls: calls, ..answer.clone() });
+        }
+        let second = self.expand_ready(&mut query);
+        let better = match &recorder {
+            Some(recorder) if is_shallow(&second) => Fine::new(&self.polytope, &query, recorder).bracket(&second),
+            _ => None,
+        };
+        let second = match better {
+            Some((bracket, direction)) => query.refined(second, &bracket, direction),
+            None => second,
+        };
+        Some(second.or_wider(answer))
     }
+}
+
+/// Was rounding the end of a query of bodies that overlap for certain?
+fn is_shallow<T: Real, const N: usize>(answer: &Answer<T, N>) -> bool {
+    answer.outcome == Outcome::Precision && answer.lower > T::zero()
 }
 
 impl<T: Real, const N: usize> Depth<T, N> {

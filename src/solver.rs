@@ -147,7 +147,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     #[inline(always)]
-    fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
+    pub(crate) fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
         match self.open(query) {
             Ok(opening) => self.close(query, opening),

@@ -79,6 +79,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         (offset > margin).then(|| self.bounds.lower_ball(offset, margin, self.per_ball))
     }
 
+    /// The same from the offset of one facet, whose height is known up to `margin`, for a ball.
+    pub fn lower_of_plane(&self, offset: T, margin: T) -> T {
+        self.bounds.lower_ball(offset, margin, self.per_ball)
+    }
+
     /// The same for any Q, with margins by direction: the least of (e - m(n)) / h over all facets.
     pub fn lower_by_direction<'f>(&self, facets: impl Iterator<Item = &'f Facet<T, N>>) -> Option<T>
     where

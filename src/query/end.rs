@@ -1,7 +1,7 @@
 //! How a query becomes an [`Answer`].
 
 use super::Query;
-use crate::answer::{Answer, Stop};
+use crate::answer::{Answer, Outcome, Stop};
 use crate::bounds::Bracket;
 use crate::scalar::{Real, Vector};
 use crate::simplex::{Simplex, Vertex};
@@ -123,6 +123,23 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             cones: 0,
             splits: 0,
             failure: if let Stop::Failed(code) = stop { code } else { 0 },
+        }
+    }
+
+    /// The answer with a bracket that is known better, in scaled units, and the direction that proves its upper end, where that is new.
+    pub fn refined(&self, answer: Answer<T, N>, bracket: &Bracket<T>, direction: Option<Vector<T, N>>) -> Answer<T, N> {
+        let outcome = match self.options.threshold {
+            Some(t) if bracket.lower >= t => Outcome::Above,
+            Some(t) if bracket.upper < t => Outcome::Below,
+            _ if self.is_met(bracket) => Outcome::Converged,
+            _ => answer.outcome,
+        };
+        Answer {
+            outcome,
+            lower: self.unscaled(bracket.lower, -T::one()),
+            upper: self.unscaled(bracket.upper, T::one()),
+            direction: direction.unwrap_or(answer.direction),
+            ..answer
         }
     }
 }

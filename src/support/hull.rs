@@ -4,7 +4,7 @@ use super::graph::{HullGraph, SEEDS, Word};
 use super::load::one_by_one;
 use super::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled};
 use super::{Failure, Support};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector, norm};
 
 /// A list of points that is not empty, and the search for the farthest one. Heights above a plane are products u.p; with
 /// `FAR`, u.(p - first), which is more accurate where all points are far from the origin.
@@ -54,6 +54,17 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
             best = better(best, (self.height::<FAR>(u, p), p));
         }
         best.1
+    }
+
+    /// The greatest height in two words. Only points that one word cannot tell from the highest are looked at twice: the products with the high
+    /// word are off by N + 1 roundoffs of |u| times the extent, and the low word is one more. `size` is the sum of the extents.
+    pub fn height_in_two_words(&self, u: &TwoWords<T, N>, size: T) -> Option<[T; 2]> {
+        let blur = size * norm(&u.high) * (T::count(4 * N + 8) * T::ROUNDOFF);
+        let least = self.height::<false>(&u.high, self.scan::<false>(&u.high)) - blur;
+        let high = self.points.iter().filter(|p| self.height::<false>(&u.high, p) >= least);
+        let sums = high.map(|p| u.dot(&Vector::from(*p)));
+        let most = sums.reduce(|most, sum| if sum.minus(&most) > T::zero() { sum } else { most });
+        Some(most?.parts().into())
     }
 
     /// The best of the listed vertices, the first one of equals.
@@ -249,6 +260,9 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
         let first = if self.spread.is_some() { Vector::from(*self.list.first).abs() } else { Vector::zeros() };
         self.extents + first
     }
+    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        self.list.height_in_two_words(u, self.extents().sum())
+    }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         self.spread.map(|spread| (Vector::from(*self.list.first), spread))
     }
@@ -308,6 +322,9 @@ impl<T: Real, W: Word> Support<T, 3> for Hull<'_, T, W> {
     }
     fn extents(&self) -> Vector<T, 3> {
         self.all.extents()
+    }
+    fn height_in_two_words(&self, u: &TwoWords<T, 3>) -> Option<[T; 2]> {
+        self.all.height_in_two_words(u)
     }
     fn center(&self) -> Option<(Vector<T, 3>, T)> {
         self.all.center()

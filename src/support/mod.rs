@@ -24,7 +24,7 @@ use core::fmt;
 
 pub use crate::depth::half_space::HalfSpace;
 use crate::depth::half_space::Unbounded;
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 
 mod combine;
 mod graph;
@@ -163,6 +163,13 @@ pub trait Support<T: Real, const N: usize> {
     /// [`error`](Support::error) for every coordinate.
     fn errors(&self) -> Vector<T, N> {
         Vector::repeat(self.error())
+    }
+
+    /// For polyhedra whose [`support`](Support::support) returns points of the core to the last bit: h(u) along a direction in two words, in two
+    /// words, off by no more than 2^8 (unit roundoff)^2 times the sum of |u_i| [`extents`](Support::extents)_i. Shallow contact of such bodies is
+    /// measured to the last digits. `None`: not offered.
+    fn height_in_two_words(&self, _u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        None
     }
 
     /// Upper bounds of |x_i| over the core, coordinate by coordinate; zeros where [`extent`](Support::extent) is not known. The default is the

@@ -15,7 +15,7 @@ use core::fmt;
 
 use super::load::one_by_one;
 use super::{Failure, Support, Symmetry};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 
 /// Why a shape cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,6 +214,9 @@ impl<T: Real, const N: usize> Support<T, N> for Point<T, N> {
     fn extents(&self) -> Vector<T, N> {
         self.at.map(magnitude)
     }
+    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        Some(u.dot(&self.at).parts().into())
+    }
     fn error(&self) -> T {
         T::zero()
     }
@@ -265,6 +268,9 @@ impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
     }
     fn error(&self) -> T {
         T::zero()
+    }
+    fn height_in_two_words(&self, _: &TwoWords<T, N>) -> Option<[T; 2]> {
+        Some([T::zero(); 2])
     }
 }
 
@@ -318,6 +324,10 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     }
     fn error(&self) -> T {
         T::zero()
+    }
+    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        // (The high word has the sign of the sum.)
+        Some(u.dot(&self.half.zip_map(&u.high, signed)).parts().into())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::load::one_by_one;
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
 use super::{Failure, Support, Symmetry};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 
 /// A cylinder: `x^2 + y^2 <= radius^2`, `|z| <= half_height`. One square root and one division.
 ///
@@ -127,6 +127,9 @@ impl<T: Real, const N: usize> Support<T, N> for Capsule<T, N> {
     }
     fn error(&self) -> T {
         T::zero()
+    }
+    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        Some(u.dot(&self.support(&u.high).ok()?).parts().into())
     }
 }
 

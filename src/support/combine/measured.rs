@@ -4,7 +4,7 @@
 //! say), so is the error, and with it every margin. 2 N support calls along the axes draw a box around the core; the default error is then the
 //! same share of that box. An error that the set states by itself says something else, and stays.
 
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::{Real, TwoWords, Vector, norm};
 use crate::support::{Failure, Support, Symmetry};
 
 /// A set, and the box around its core.
@@ -72,6 +72,9 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     }
     fn mirrored(&self, signs: u8) -> bool {
         self.set.mirrored(signs)
+    }
+    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        self.set.height_in_two_words(u)
     }
     fn errors(&self) -> Vector<T, N> {
         self.extents * (T::count(16 * N) * T::ROUNDOFF)

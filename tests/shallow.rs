@@ -1,0 +1,122 @@
+//! Shallow contact in single precision: bodies of size 1 whose depth is a thousand roundoffs of their size. What the numbers given mean exactly is
+//! computed in double precision.
+
+mod common;
+
+use common::dice::Dice;
+use nalgebra::{Rotation3, SMatrix, Unit, Vector3};
+use qdist::support::{BoxShape, Capsule, Points, Support};
+use qdist::{Body, Options, Outcome, Workspace};
+
+type Pose = (SMatrix<f32, 3, 3>, Vector3<f32>);
+
+/// The numbers of a shape, as they are given.
+enum Numbers {
+    Box(Vector3<f32>),
+    Hull(Vec<[f32; 3]>),
+    Capsule(f32, f32),
+}
+
+impl Numbers {
+    fn random(rng: &mut Dice, kind: usize) -> Self {
+        match kind {
+            0 => Numbers::Box(Vector3::from_fn(|_, _| rng.range(0.3, 1.0) as f32)),
+            1 => {
+                let n = 4 + rng.below(36);
+                Numbers::Hull((0..n).map(|_| direction(rng).map(|x| x as f32).into()).collect())
+            }
+            2 => Numbers::Capsule(rng.range(0.0, 0.01) as f32, rng.range(0.3, 1.0) as f32),
+            3 => Numbers::Capsule(rng.range(0.2, 1.0) as f32, rng.range(0.3, 1.0) as f32),
+            _ => Numbers::Capsule(rng.range(0.2, 1.0) as f32, 0.0),
+        }
+    }
+
+    /// Calls with the shape in either precision.
+    fn both<R>(&self, scale: f32, act: impl FnOnce(&dyn Support<f32, 3>, &dyn Support<f64, 3>) -> R) -> R {
+        match self {
+            Numbers::Box(half) => {
+                let half = half * scale;
+                act(&BoxShape::new(half).unwrap(), &BoxShape::new(half.map(f64::from)).unwrap())
+            }
+            Numbers::Hull(points) => {
+                let points: Vec<[f32; 3]> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+                let wide: Vec<[f64; 3]> = points.iter().map(|p| p.map(f64::from)).collect();
+                act(&Points::new(&points).unwrap(), &Points::new(&wide).unwrap())
+            }
+            &Numbers::Capsule(radius, half) => {
+                let (radius, half) = (radius * scale, half * scale);
+                act(&Capsule::new(radius, half).unwrap(), &Capsule::new(f64::from(radius), f64::from(half)).unwrap())
+            }
+        }
+    }
+}
+
+fn direction(rng: &mut Dice) -> Vector3<f64> {
+    loop {
+        let v = Vector3::from_fn(|_, _| rng.signed());
+        if v.norm() > 0.1 && v.norm() < 1.0 {
+            return v.normalize();
+        }
+    }
+}
+
+fn pose(rng: &mut Dice) -> Pose {
+    let rotation = Rotation3::from_axis_angle(&Unit::new_normalize(direction(rng)), rng.range(0.0, 3.0));
+    (rotation.matrix().map(|x| x as f32), Vector3::zeros())
+}
+
+fn exact(a: &dyn Support<f64, 3>, at: &Pose, b: &dyn Support<f64, 3>, bt: &Pose) -> (f64, f64) {
+    let place = |set, pose: &Pose| Body::new(set, pose.0.map(f64::from), pose.1.map(f64::from)).map_err(drop);
+    let (a, b) = (place(a, at).unwrap(), place(b, bt).unwrap());
+    let mut memory = Workspace::<f64, 3, 512, 1024>::new();
+    let depth = memory.solver().depth(&a, &b, &Options { relative: 1e-10, ..Options::default() });
+    (depth.lower, depth.upper)
+}
+
+/// Of so many contacts of polyhedra, their scale and offset: how many have a bracket as narrow as asked for. All must be true.
+fn converged(count: usize, scale: f32, offset: f32, depths: std::ops::Range<f64>) -> usize {
+    let mut rng = Dice::new(7);
+    let mut met = 0;
+    for number in 0..count {
+        let (first, second) = (Numbers::random(&mut rng, number % 5), Numbers::random(&mut rng, number / 5 % 5));
+        let (mut at, mut bt) = (pose(&mut rng), pose(&mut rng));
+        at.1 = direction(&mut rng).map(|x| (x as f32) * offset * scale);
+        let (along, wanted) = (direction(&mut rng), f64::from(scale) * rng.range(depths.start, depths.end));
+        first.both(scale, |a, wide_a| {
+            second.both(scale, |b, wide_b| {
+                // Moved along until the depth is about what is wanted.
+                let (mut near, mut far) = (0.0, 4.0 * f64::from(scale));
+                for _ in 0..60 {
+                    let middle = (near + far) / 2.0;
+                    bt.1 = at.1 + (along * middle).map(|x| x as f32);
+                    if exact(wide_a, &at, wide_b, &bt).0 > wanted { near = middle } else { far = middle }
+                }
+                bt.1 = at.1 + (along * near).map(|x| x as f32);
+                let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
+                let (body_a, body_b) = (Body::new(a, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
+                let mut memory = Workspace::<f32, 3, 64, 128>::new();
+                let depth = memory.solver().depth(&body_a, &body_b, &Options::default());
+                let (low, high) = (f64::from(depth.lower), f64::from(depth.upper));
+                assert!(low <= upper && lower <= high, "{number}: [{low}, {high}] for [{lower}, {upper}]");
+                met += usize::from(depth.outcome == Outcome::Converged);
+                if depth.outcome != Outcome::Converged {
+                    println!(
+                        "{number}: {:?} [{low:e}, {high:e}] {:e} for {lower:e}, {} {}",
+                        depth.outcome,
+                        high - low,
+                        depth.vertices,
+                        depth.facets
+                    );
+                } else {
+                    assert!(high - low <= 1e-4 * low, "{number}: [{low}, {high}]");
+                }
+            });
+        });
+    }
+    met
+}
+
+#[test]
+fn shallow_contacts_of_polyhedra_converge_in_f32() {
+    assert_eq!(converged(300, 1.0, 0.0, 1e-3..1e-1), 300);
+}
