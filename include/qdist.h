@@ -420,6 +420,11 @@ typedef struct {
     uint32_t dimension;
 } qdist_set_f64;
 
+// For polyhedra whose support function returns points of the core to the last bit, as one of stored corners does: writes h(u) along a direction u in
+// twice the precision. u is the exact sum of two vectors, direction[0 .. N - 1] + direction[N .. 2 N - 1], and h(u) that of height[0] + height[1]; it
+// may be off by 2^8 roundoff^2 times the sum of |u_i| extents[i]. Returns 0, or anything else where it has no answer.
+typedef int32_t (*qdist_height_f64)(void *user, const double *direction, double *height);
+
 // A set in space with a pose: x -> rotation * x + translation.
 typedef struct {
     // The set, in the body's frame.
@@ -446,6 +451,9 @@ typedef struct {
     uint32_t symmetry;
     // NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
+    // NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
+    // capsules, points and hulls put it here. Called with set.user.
+    qdist_height_f64 height;
 } qdist_body_f64;
 
 // Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
@@ -1056,6 +1064,8 @@ typedef struct {
     double errors[2];
     // NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
+    // As in qdist_body_f64.
+    qdist_height_f64 height;
 } qdist_body2_f64;
 
 // All points within `radius` of the origin.
@@ -1327,6 +1337,8 @@ typedef struct {
     uint32_t dimension;
 } qdist_set_f32;
 
+typedef int32_t (*qdist_height_f32)(void *user, const float *direction, float *height);
+
 typedef struct {
     qdist_set_f32 set;
     float rotation[9];
@@ -1338,6 +1350,7 @@ typedef struct {
     float errors[3];
     uint32_t symmetry;
     qdist_unbounded unbounded;
+    qdist_height_f32 height;
 } qdist_body_f32;
 
 qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);
@@ -1694,6 +1707,7 @@ typedef struct {
     float extents[2];
     float errors[2];
     qdist_unbounded unbounded;
+    qdist_height_f32 height;
 } qdist_body2_f32;
 
 typedef struct {

@@ -57,9 +57,10 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
     }
 
     /// The greatest height in two words. Only points that one word cannot tell from the highest are looked at twice: the products with the high
-    /// word are off by N + 1 roundoffs of |u| times the extent, and the low word is one more. `size` is the sum of the extents.
-    pub fn height_in_two_words(&self, u: &TwoWords<T, N>, size: T) -> Option<[T; 2]> {
-        let blur = size * norm(&u.high) * (T::count(4 * N + 8) * T::ROUNDOFF);
+    /// word are off by N + 1 roundoffs of |u| times the extent, and the low word is one more.
+    pub fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+        let size = self.points.iter().flatten().fold(T::zero(), |most, &x| most.at_least(x).at_least(-x));
+        let blur = size * T::count(N) * norm(&u.high) * (T::count(4 * N + 8) * T::ROUNDOFF);
         let least = self.height::<false>(&u.high, self.scan::<false>(&u.high)) - blur;
         let high = self.points.iter().filter(|p| self.height::<false>(&u.high, p) >= least);
         let sums = high.map(|p| u.dot(&Vector::from(*p)));
@@ -261,7 +262,7 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
         self.extents + first
     }
     fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
-        self.list.height_in_two_words(u, self.extents().sum())
+        self.list.height_in_two_words(u)
     }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         self.spread.map(|spread| (Vector::from(*self.list.first), spread))

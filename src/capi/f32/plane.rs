@@ -17,11 +17,11 @@ use super::super::status::{
 use super::super::symmetry::qdist_unbounded;
 use super::points::{self, qdist_points_f32};
 use super::query::{conclude, convert, from_depth, qdist_depth_f32, qdist_options_f32};
-use super::sets::{arguments, qdist_set_f32, qdist_support_f32};
+use super::sets::{arguments, ask_height, qdist_height_f32, qdist_set_f32, qdist_support_f32};
 use super::shapes::{self, Shape, shape};
 use crate::Body;
 use crate::depth::{self, BodyError, Matrix2};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 use crate::support::{BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Rigid, ShapeError, Sphere, Support};
 use core::ffi::c_void;
 
@@ -43,9 +43,11 @@ pub struct qdist_body2_f32 {
     pub errors: [f32; 2],
     /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
+    /// As in qdist_body_f32.
+    pub height: qdist_height_f32,
 }
 
-gaps!(qdist_body2_f32, set.dimension..rotation, errors..unbounded, unbounded..);
+gaps!(qdist_body2_f32, set.dimension..rotation, errors..unbounded, height..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -112,6 +114,7 @@ impl qdist_body2_f32 {
             extents: [0.0; 2],
             errors: [0.0; 2],
             unbounded: None,
+            height: None,
         }
     }
 
@@ -180,6 +183,10 @@ impl Support<f32, 2> for CheckedBody2 {
     fn error(&self) -> f32 {
         self.0.set.stated_error(2)
     }
+    fn height_in_two_words(&self, u: &TwoWords<f32, 2>) -> Option<[f32; 2]> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask_height(self.0.height, self.0.set.user, u) }
+    }
     fn errors(&self) -> Vector<f32, 2> {
         let stated = self.0.extents.iter().any(|&x| x > 0.0);
         if stated { Vector::from(self.0.errors) } else { Vector::repeat(self.0.set.stated_error(2)) }
@@ -200,8 +207,10 @@ unsafe fn fill<S: Shape<2>>(body: *mut qdist_body2_f32, shape: *const S, support
     let (made, set) = unsafe { shapes::set_of(shape, support) }?;
     let rolling_radius = set.rolling_radius();
     let (extents, errors) = (set.extents().into(), set.errors().into());
+    let height = shapes::height_of::<S, 2>(&set);
+    let made = qdist_body2_f32 { rolling_radius, extents, errors, height, ..qdist_body2_f32::at_origin(made) };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { put(body, qdist_body2_f32 { rolling_radius, extents, errors, ..qdist_body2_f32::at_origin(made) }) };
+    unsafe { put(body, made) };
     Ok(())
 }
 
@@ -254,7 +263,8 @@ pub unsafe extern "C" fn qdist_body2_points_f32(
         // SAFETY: what the header asks of the caller.
         let (set, center, [extents, errors]) =
             unsafe { points::set_of::<2>(shared(shape)?, shape.cast(), supports, [None; 2]) }?;
-        let mut made = qdist_body2_f32 { extents, errors, ..qdist_body2_f32::at_origin(set) };
+        let height: qdist_height_f32 = Some(points::height::<2>);
+        let mut made = qdist_body2_f32 { extents, errors, height, ..qdist_body2_f32::at_origin(set) };
         if let Some((center, spread)) = center {
             (made.center, made.spread) = (center, spread);
         }

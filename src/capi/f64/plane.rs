@@ -16,11 +16,11 @@ use super::super::status::{
 use super::super::symmetry::qdist_unbounded;
 use super::points::{self, qdist_points_f64};
 use super::query::{conclude, convert, from_depth, qdist_depth_f64, qdist_options_f64};
-use super::sets::{arguments, qdist_set_f64, qdist_support_f64};
+use super::sets::{arguments, ask_height, qdist_height_f64, qdist_set_f64, qdist_support_f64};
 use super::shapes::{self, Shape, shape};
 use crate::Body;
 use crate::depth::{self, BodyError, Matrix2};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 use crate::support::{BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Rigid, ShapeError, Sphere, Support};
 use core::ffi::c_void;
 
@@ -42,9 +42,11 @@ pub struct qdist_body2_f64 {
     pub errors: [f64; 2],
     /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
+    /// As in qdist_body_f64.
+    pub height: qdist_height_f64,
 }
 
-gaps!(qdist_body2_f64, set.dimension..rotation, errors..unbounded, unbounded..);
+gaps!(qdist_body2_f64, set.dimension..rotation, errors..unbounded, height..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -111,6 +113,7 @@ impl qdist_body2_f64 {
             extents: [0.0; 2],
             errors: [0.0; 2],
             unbounded: None,
+            height: None,
         }
     }
 
@@ -179,6 +182,10 @@ impl Support<f64, 2> for CheckedBody2 {
     fn error(&self) -> f64 {
         self.0.set.stated_error(2)
     }
+    fn height_in_two_words(&self, u: &TwoWords<f64, 2>) -> Option<[f64; 2]> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask_height(self.0.height, self.0.set.user, u) }
+    }
     fn errors(&self) -> Vector<f64, 2> {
         let stated = self.0.extents.iter().any(|&x| x > 0.0);
         if stated { Vector::from(self.0.errors) } else { Vector::repeat(self.0.set.stated_error(2)) }
@@ -199,8 +206,10 @@ unsafe fn fill<S: Shape<2>>(body: *mut qdist_body2_f64, shape: *const S, support
     let (made, set) = unsafe { shapes::set_of(shape, support) }?;
     let rolling_radius = set.rolling_radius();
     let (extents, errors) = (set.extents().into(), set.errors().into());
+    let height = shapes::height_of::<S, 2>(&set);
+    let made = qdist_body2_f64 { rolling_radius, extents, errors, height, ..qdist_body2_f64::at_origin(made) };
     // SAFETY: not NULL, aligned, and the caller's promise.
-    unsafe { put(body, qdist_body2_f64 { rolling_radius, extents, errors, ..qdist_body2_f64::at_origin(made) }) };
+    unsafe { put(body, made) };
     Ok(())
 }
 
@@ -253,7 +262,8 @@ pub unsafe extern "C" fn qdist_body2_points_f64(
         // SAFETY: what the header asks of the caller.
         let (set, center, [extents, errors]) =
             unsafe { points::set_of::<2>(shared(shape)?, shape.cast(), supports, [None; 2]) }?;
-        let mut made = qdist_body2_f64 { extents, errors, ..qdist_body2_f64::at_origin(set) };
+        let height: qdist_height_f64 = Some(points::height::<2>);
+        let mut made = qdist_body2_f64 { extents, errors, height, ..qdist_body2_f64::at_origin(set) };
         if let Some((center, spread)) = center {
             (made.center, made.spread) = (center, spread);
         }

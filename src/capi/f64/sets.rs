@@ -14,7 +14,7 @@ use super::super::symmetry::{
 };
 use crate::Body;
 use crate::depth::{BodyError, Matrix3};
-use crate::scalar::{Real, Vector};
+use crate::scalar::{Real, TwoWords, Vector};
 use crate::support::{Failure, Support, Symmetry};
 use core::ffi::c_void;
 
@@ -28,6 +28,12 @@ use core::ffi::c_void;
 /// points are equally far, any of them.
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
+
+/// For polyhedra whose support function returns points of the core to the last bit, as one of stored corners does: writes h(u) along a direction u in
+/// twice the precision. u is the exact sum of two vectors, direction[0 .. N - 1] + direction[N .. 2 N - 1], and h(u) that of height[0] + height[1]; it
+/// may be off by 2^8 roundoff^2 times the sum of |u_i| extents[i]. Returns 0, or anything else where it has no answer.
+pub type qdist_height_f64 =
+    Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, height: *mut f64) -> i32>;
 
 /// A convex set, core + radius * ball. Start with `= {0}`: what is zero takes its default.
 #[repr(C)]
@@ -84,9 +90,12 @@ pub struct qdist_body_f64 {
     pub symmetry: u32,
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
+    /// NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
+    /// capsules, points and hulls put it here. Called with set.user.
+    pub height: qdist_height_f64,
 }
 
-gaps!(qdist_body_f64, set.dimension..rotation, symmetry..unbounded, unbounded..);
+gaps!(qdist_body_f64, set.dimension..rotation, symmetry..unbounded, height..);
 
 impl qdist_set_f64 {
     /// Checks the numbers for dimension `N`.
@@ -159,6 +168,7 @@ impl qdist_body_f64 {
             errors: [0.0; 3],
             symmetry: QDIST_SYMMETRY_NONE,
             unbounded: None,
+            height: None,
         }
     }
 
@@ -237,6 +247,10 @@ impl Support<f64, 3> for CheckedBody {
     fn error(&self) -> f64 {
         self.0.set.stated_error(3)
     }
+    fn height_in_two_words(&self, u: &TwoWords<f64, 3>) -> Option<[f64; 2]> {
+        // SAFETY: the promise of `checked`.
+        unsafe { ask_height(self.0.height, self.0.set.user, u) }
+    }
     fn errors(&self) -> Vector<f64, 3> {
         if self.0.states_axes() { Vector::from(self.0.errors) } else { Vector::repeat(self.0.set.stated_error(3)) }
     }
@@ -289,4 +303,49 @@ pub(super) unsafe fn arguments<'a, S, const N: usize>(
 pub(super) fn room<const N: usize>(point: *mut f64) -> Check<*mut [f64; N]> {
     aligned(point)?;
     Ok(point.cast())
+}
+
+/// Asks for h(u) in two words.
+///
+/// # Safety
+/// The function may be called with `user` in dimension `N`.
+pub(super) unsafe fn ask_height<const N: usize>(
+    function: qdist_height_f64,
+    user: *mut c_void,
+    u: &TwoWords<f64, N>,
+) -> Option<[f64; 2]> {
+    let function = function?;
+    let mut direction = [0.0; 6];
+    for (to, &word) in direction.iter_mut().zip(u.high.iter().chain(u.low.iter())) {
+        *to = word;
+    }
+    let mut height = [f64::NAN; 2];
+    // SAFETY: the caller's promise.
+    let code = unsafe { function(user, direction.as_ptr(), height.as_mut_ptr()) };
+    (code == 0).then_some(height)
+}
+
+/// Answers for h(u) in two words, with the struct behind `user`.
+///
+/// # Safety
+/// Each pointer that is not NULL is aligned and valid for a `S`, for 2 `N` numbers, and for writes of two.
+#[inline(always)]
+pub(super) unsafe fn answer_height<S, const N: usize>(
+    user: *mut c_void,
+    direction: *const f64,
+    height: *mut f64,
+    find: impl FnOnce(&S, &TwoWords<f64, N>) -> Option<[f64; 2]>,
+) -> i32 {
+    let found = || {
+        // SAFETY: the caller's promise.
+        let (shape, [high, low], room) = unsafe {
+            let (shape, _, room) = arguments::<S, N>(user, direction, height).ok()?;
+            (shape, direction.cast::<[[f64; N]; 2]>().read(), room.cast::<[f64; 2]>())
+        };
+        let found = find(shape, &TwoWords { high: Vector::from(high), low: Vector::from(low) })?;
+        // SAFETY: `arguments` has checked it.
+        unsafe { room.write(found) };
+        Some(())
+    };
+    i32::from(found().is_none())
 }

@@ -14,8 +14,8 @@
 use super::super::generic::{aligned, mirrored_always, put, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
-use super::sets::{arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64};
-use crate::scalar::{Real, Vector};
+use super::sets::{answer_height, arguments, qdist_body_f64, qdist_height_f64, qdist_set_f64, qdist_support_f64};
+use crate::scalar::{Real, TwoWords, Vector};
 use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
 use core::ffi::c_void;
 
@@ -138,10 +138,26 @@ unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f64, shape: *const S, support:
     let rolling_radius = set.rolling_radius();
     let symmetry = from_symmetry(set.symmetry());
     let (extents, errors) = (set.extents().into(), set.errors().into());
-    let made = qdist_body_f64 { symmetry, rolling_radius, extents, errors, ..qdist_body_f64::at_origin(made) };
+    let height = height_of::<S, 3>(&set);
+    let made = qdist_body_f64 { symmetry, rolling_radius, extents, errors, height, ..qdist_body_f64::at_origin(made) };
     // SAFETY: not NULL, aligned, and the caller's promise.
     unsafe { put(body, made) };
     Ok(())
+}
+
+/// The function for h(u) in two words, for shapes that have it.
+pub(super) fn height_of<S: Shape<N>, const N: usize>(set: &S::Set) -> qdist_height_f64 {
+    set.height_in_two_words(&TwoWords::from(Vector::zeros()))?;
+    Some(height::<S, N>)
+}
+
+unsafe extern "C" fn height<S: Shape<N>, const N: usize>(
+    user: *mut c_void,
+    direction: *const f64,
+    height: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller.
+    unsafe { answer_height(user, direction, height, |shape: &S, u| shape.trusted().height_in_two_words(u)) }
 }
 
 pub(super) fn from_symmetry(symmetry: Symmetry) -> u32 {
