@@ -330,6 +330,9 @@ typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
 // What answers for a body without end. Not for functions of your own.
 typedef qdist_status (*qdist_unbounded)(const void *a, const void *b, const void *options, void *result);
 
+// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
+typedef void (*qdist_turning)(void);
+
 /* =========================================================== SOLVERS ===========================================================
  *
  * A solver lives in memory that you own: a static array, a stack frame, a heap block. It is made once and then used for any
@@ -446,6 +449,9 @@ typedef struct {
     uint32_t symmetry;
     // NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
+    // The search for arcs of minimisers around the axis: set by the body functions of cylinders, cones and ellipsoids of
+    // revolution. NULL for your own sets.
+    qdist_turning turning;
 } qdist_body_f64;
 
 // Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
@@ -1338,6 +1344,7 @@ typedef struct {
     float errors[3];
     uint32_t symmetry;
     qdist_unbounded unbounded;
+    qdist_turning turning;
 } qdist_body_f32;
 
 qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);

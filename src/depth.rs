@@ -23,7 +23,10 @@ use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
 use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
+mod arcs;
 pub(crate) mod half_space;
+
+pub use arcs::Turning;
 
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
@@ -254,7 +257,7 @@ struct Anchor<T: Real, const N: usize> {
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
 /// from the world's origin nor with that of their vertices from their frames'.
-struct Pair<'p, 'a, T: Real, const N: usize> {
+pub(crate) struct Pair<'p, 'a, T: Real, const N: usize> {
     a: &'p Body<'a, T, N>,
     b: &'p Body<'a, T, N>,
     on_a: Anchor<T, N>,
@@ -292,6 +295,21 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
             return Err(Failure(if said { TOO_LARGE } else { NOT_FINITE }));
         }
         Ok(Pair { a, b, on_a, on_b, offset, extent, error, extra: left })
+    }
+
+    /// Adds to the error, in all directions.
+    fn charge(&mut self, error: T) {
+        self.error += error;
+        self.extra += error;
+    }
+
+    /// The options, with the direction to look in first.
+    fn aimed(&self, options: &Options<T, N>) -> Options<T, N> {
+        let mut options = *options;
+        if options.guess.is_none() && self.offset.iter().any(|&x| x != T::zero()) {
+            options.guess = Some(-self.offset);
+        }
+        options
     }
 
     /// The error along a unit vector, as [`axes`](Self::axes) tells it.
@@ -375,12 +393,18 @@ fn anchor_offset<T: Real, const N: usize>(
     (offset, terms * T::count(256) * T::ROUNDOFF * T::ROUNDOFF)
 }
 
-/// Lengths that the common axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
+/// Lengths that an axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
 const AXIS_ROUNDOFFS: usize = 64;
 
 impl<T: Real> Pair<'_, '_, T, 3> {
-    /// The axis that both bodies turn about, if there is one up to rounding; the deviation goes into `error`.
-    fn common_axis(&mut self) -> Option<Vector<T, 3>> {
+    /// How far the second axis, or the second body's anchor, is off the first axis: the angle, plus the length as a share of the extents.
+    fn aside(&self, first: &Vector<T, 3>, second: &Vector<T, 3>) -> T {
+        norm(&first.cross(second)) + norm(&first.cross(&self.offset)) / self.extent
+    }
+
+    /// The axis that both bodies turn about, if there is one; and is it theirs up to rounding? Else the deviation is a small share of what the
+    /// tolerance allows. In both cases it goes into the error.
+    fn common_axis(&mut self, relative: T) -> Option<(Vector<T, 3>, bool)> {
         let axis = |body: &Body<'_, T>| body.rotation.column(2).into_owned();
         let (first, second) = match (self.a.shape.symmetry(), self.b.shape.symmetry()) {
             (Symmetry::Axis, Symmetry::Axis) => (axis(self.a), axis(self.b)),
@@ -389,9 +413,9 @@ impl<T: Real> Pair<'_, '_, T, 3> {
             _ => return None,
         };
         let allowed = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
-        // The angle, plus the length as a share of the extents.
-        let aside = norm(&first.cross(&second)) + norm(&first.cross(&self.offset)) / self.extent;
-        if !(aside <= allowed) || self.on_a.center.is_some() || self.on_b.center.is_some() {
+        let aside = self.aside(&first, &second);
+        let near = aside <= allowed.at_least(relative * T::of(0.0625));
+        if !near || self.on_a.center.is_some() || self.on_b.center.is_some() {
             return None;
         }
         let stretched = skew(&self.a.rotation).at_least(skew(&self.b.rotation));
@@ -402,10 +426,8 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
         // The roundoffs are those of measuring it.
         let moved = aside + stretched + stretched + T::count(4) * T::ROUNDOFF;
-        let deviation = moved * T::of(2.1) * self.extent;
-        self.error += deviation;
-        self.extra += deviation;
-        Some(first * (T::one() / norm(&first)))
+        self.charge(moved * T::of(2.1) * self.extent);
+        Some((first * (T::one() / norm(&first)), aside <= allowed))
     }
 }
 
@@ -496,19 +518,25 @@ impl<T: Real> Solver<'_, T, 3> {
             Err(failure) => return Depth::failed(failure),
         };
         let mut calls = pair.calls();
-        if let Some(axis) = pair.common_axis() {
+        let uncharged = (pair.error, pair.extra);
+        if let Some((axis, sure)) = pair.common_axis(options.relative) {
             let ball = Ball::unit();
             let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
             query.interrupt = interrupt;
             query.count_calls(pair.calls());
             if checked.and_then(|()| query.normalize()).is_ok()
                 && let Some(answer) = self.solve_meridian(&mut query, &axis)
+                && (sure || decides(&answer, &axis))
             {
                 return Depth::new(&answer, &pair);
             }
             calls = query.support_calls();
+            (pair.error, pair.extra) = uncharged;
         }
-        self.expand_pair(&pair, calls, options, interrupt)
+        match a.shape.turning().or(b.shape.turning()) {
+            Some(turning) => (turning.depth)(self, &mut pair, calls, options, interrupt),
+            None => self.expand_pair(&pair, calls, options, interrupt),
+        }
     }
 }
 
@@ -576,15 +604,23 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T, N> {
         let ball = Ball::unit();
-        let mut options = *options;
-        if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
-            options.guess = Some(-pair.offset);
-        }
+        let options = pair.aimed(options);
         let answer = self.expand_only(pair.query(&ball, calls, &options, interrupt));
+        self.conclude_pair(pair, answer, &options, interrupt)
+    }
+
+    /// The answer, or that of a second look where it is open.
+    fn conclude_pair(
+        &mut self,
+        pair: &Pair<'_, '_, T, N>,
+        answer: Answer<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T, N> {
         if !answer.outcome.is_open() {
             return Depth::new(&answer, pair);
         }
-        let second = self.look_again_at_pair(pair, &answer, &options, interrupt);
+        let second = self.look_again_at_pair(pair, &answer, options, interrupt);
         Depth::new(&second.unwrap_or(answer), pair)
     }
 
@@ -621,6 +657,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
         Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }
+}
+
+/// Is the answer of an axis that is one only up to the tolerance worth more than expansion's? Near the poles no arc is left, and the
+/// witnesses of one plane do not stand for the others.
+fn decides<T: Real>(answer: &Answer<T, 3>, axis: &Vector<T, 3>) -> bool {
+    let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
+    known && answer.direction.dot(axis).abs() < T::of(0.99)
 }
 
 impl<T: Real, const N: usize> Depth<T, N> {
