@@ -26,6 +26,7 @@ use nalgebra::SMatrix;
 mod arcs;
 pub(crate) mod half_space;
 
+use arcs::NEARLY_COAXIAL;
 pub use arcs::Turning;
 
 /// A 3 x 3 matrix.
@@ -297,13 +298,21 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         Ok(Pair { a, b, on_a, on_b, offset, extent, error, extra: left })
     }
 
-    /// Adds to the error, in all directions.
-    fn charge(&mut self, error: T) {
+    /// Adds to the error, in all directions; returns what it was.
+    fn charge(&mut self, error: T) -> [T; 2] {
+        let before = [self.error, self.extra];
         self.error += error;
         self.extra += error;
+        before
+    }
+
+    /// Takes it away again.
+    fn discharge(&mut self, before: [T; 2]) {
+        [self.error, self.extra] = before;
     }
 
     /// The options, with the direction to look in first.
+    #[inline(always)]
     fn aimed(&self, options: &Options<T, N>) -> Options<T, N> {
         let mut options = *options;
         if options.guess.is_none() && self.offset.iter().any(|&x| x != T::zero()) {
@@ -396,15 +405,27 @@ fn anchor_offset<T: Real, const N: usize>(
 /// Lengths that an axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
 const AXIS_ROUNDOFFS: usize = 64;
 
-impl<T: Real> Pair<'_, '_, T, 3> {
-    /// How far the second axis, or the second body's anchor, is off the first axis: the angle, plus the length as a share of the extents.
-    fn aside(&self, first: &Vector<T, 3>, second: &Vector<T, 3>) -> T {
-        norm(&first.cross(second)) + norm(&first.cross(&self.offset)) / self.extent
-    }
+/// The axis of two bodies of revolution, or of one and a ball.
+#[derive(Clone, Copy)]
+pub(crate) struct Axis<T: Real> {
+    /// A unit vector along the first body's.
+    along: Vector<T, 3>,
+    /// How far the second axis, or the second body's anchor, is off the first: the angle, plus the length as a share of the extents.
+    aside: T,
+    /// How far the matrices are from rotations.
+    stretched: T,
+}
 
-    /// The axis that both bodies turn about, if there is one; and is it theirs up to rounding? Else the deviation is a small share of what the
-    /// tolerance allows. In both cases it goes into the error.
-    fn common_axis(&mut self, relative: T) -> Option<(Vector<T, 3>, bool)> {
+impl<T: Real> Axis<T> {
+    /// Is it theirs up to rounding?
+    fn is_common(&self) -> bool {
+        self.aside <= T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF
+    }
+}
+
+impl<T: Real> Pair<'_, '_, T, 3> {
+    /// The axis that both bodies turn about, up to rounding or up to `near`.
+    fn axis(&self, near: T) -> Option<Axis<T>> {
         let axis = |body: &Body<'_, T>| body.rotation.column(2).into_owned();
         let (first, second) = match (self.a.shape.symmetry(), self.b.shape.symmetry()) {
             (Symmetry::Axis, Symmetry::Axis) => (axis(self.a), axis(self.b)),
@@ -412,22 +433,13 @@ impl<T: Real> Pair<'_, '_, T, 3> {
             (Symmetry::Full, Symmetry::Axis) => (axis(self.b), axis(self.b)),
             _ => return None,
         };
-        let allowed = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
-        let aside = self.aside(&first, &second);
-        let near = aside <= allowed.at_least(relative * T::of(0.0625));
-        if !near || self.on_a.center.is_some() || self.on_b.center.is_some() {
+        let aside = norm(&first.cross(&second)) + norm(&first.cross(&self.offset)) / self.extent;
+        let roundoff = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
+        if !(aside <= roundoff.at_least(near)) || self.on_a.center.is_some() || self.on_b.center.is_some() {
             return None;
         }
         let stretched = skew(&self.a.rotation).at_least(skew(&self.b.rotation));
-        if !(stretched <= allowed) {
-            return None;
-        }
-        // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
-        // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
-        // The roundoffs are those of measuring it.
-        let moved = aside + stretched + stretched + T::count(4) * T::ROUNDOFF;
-        self.charge(moved * T::of(2.1) * self.extent);
-        Some((first * (T::one() / norm(&first)), aside <= allowed))
+        (stretched <= roundoff).then(|| Axis { along: first * (T::one() / norm(&first)), aside, stretched })
     }
 }
 
@@ -518,25 +530,41 @@ impl<T: Real> Solver<'_, T, 3> {
             Err(failure) => return Depth::failed(failure),
         };
         let mut calls = pair.calls();
-        let uncharged = (pair.error, pair.extra);
-        if let Some((axis, sure)) = pair.common_axis(options.relative) {
-            let ball = Ball::unit();
-            let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
-            query.interrupt = interrupt;
-            query.count_calls(pair.calls());
-            if checked.and_then(|()| query.normalize()).is_ok()
-                && let Some(answer) = self.solve_meridian(&mut query, &axis)
-                && (sure || decides(&answer, &axis))
-            {
-                return Depth::new(&answer, &pair);
-            }
-            calls = query.support_calls();
-            (pair.error, pair.extra) = uncharged;
+        let axis = pair.axis(options.relative * T::of(NEARLY_COAXIAL));
+        if let Some(axis) = axis.filter(Axis::is_common)
+            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options, interrupt)
+        {
+            return Depth::new(&answer, &pair);
         }
         match a.shape.turning().or(b.shape.turning()) {
-            Some(turning) => (turning.depth)(self, &mut pair, calls, options, interrupt),
+            Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options, interrupt),
             None => self.expand_pair(&pair, calls, options, interrupt),
         }
+    }
+
+    /// The answer in a plane of the axis, as if both bodies turned about it: what they are off goes into the error. Adds to the support calls.
+    fn depth_on_axis(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        axis: &Axis<T>,
+        calls: &mut u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Answer<T, 3>> {
+        // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
+        // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
+        // The roundoffs are those of measuring it.
+        let moved = axis.aside + axis.stretched + axis.stretched + T::count(4) * T::ROUNDOFF;
+        let before = pair.charge(moved * T::of(2.1) * pair.extent);
+        let ball = Ball::unit();
+        let (mut query, checked) = Query::new(&*pair, &ball, pair.radius(), *options);
+        query.interrupt = interrupt;
+        query.count_calls(*calls);
+        let ready = checked.and_then(|()| query.normalize()).is_ok();
+        let answer = if ready { self.solve_meridian(&mut query, &axis.along) } else { None };
+        *calls = query.support_calls();
+        pair.discharge(before);
+        answer
     }
 }
 
@@ -606,22 +634,23 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let ball = Ball::unit();
         let options = pair.aimed(options);
         let answer = self.expand_only(pair.query(&ball, calls, &options, interrupt));
-        self.conclude_pair(pair, answer, &options, interrupt)
+        self.conclude_pair(pair, &answer, &options, interrupt)
     }
 
     /// The answer, or that of a second look where it is open.
+    #[inline(always)]
     fn conclude_pair(
         &mut self,
         pair: &Pair<'_, '_, T, N>,
-        answer: Answer<T, N>,
+        answer: &Answer<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T, N> {
         if !answer.outcome.is_open() {
-            return Depth::new(&answer, pair);
+            return Depth::new(answer, pair);
         }
-        let second = self.look_again_at_pair(pair, &answer, options, interrupt);
-        Depth::new(&second.unwrap_or(answer), pair)
+        let second = self.look_again_at_pair(pair, answer, options, interrupt);
+        Depth::new(second.as_ref().unwrap_or(answer), pair)
     }
 
     /// A second look (module `second_look`), at each body by itself.
@@ -657,13 +686,6 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let second = self.expand_sharper(sharper.query(&ball, calls, options, interrupt), &answer.direction, measured);
         Some(second.map_or(Answer { support_calls: calls, ..answer.clone() }, |second| second.or_wider(answer)))
     }
-}
-
-/// Is the answer of an axis that is one only up to the tolerance worth more than expansion's? Near the poles no arc is left, and the
-/// witnesses of one plane do not stand for the others.
-fn decides<T: Real>(answer: &Answer<T, 3>, axis: &Vector<T, 3>) -> bool {
-    let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
-    known && answer.direction.dot(axis).abs() < T::of(0.99)
 }
 
 impl<T: Real, const N: usize> Depth<T, N> {

@@ -209,6 +209,9 @@ impl<T: Real> Solver<'_, T, 3> {
         let guess = query.first_direction();
         query.support(&guess)?;
         let raw = [query.support(&poles[0])?.0, query.support(&poles[1])?.0];
+        if query.is_at_zero() {
+            return Ok(Search::Failed);
+        }
         let mut start = azimuth(query, &axis);
         let offset = spin.offset * query.scale();
         let mut lower = T::HUGE;

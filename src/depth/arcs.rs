@@ -1,14 +1,14 @@
 //! Depth where a body turns about an axis: minimisers may lie on an arc around it (module `sectors`).
 //!
-//! Two bodies of revolution whose axes nearly agree are searched by sectors at once. Other pairs are expanded as any, but only
-//! to [`PATIENCE`] vertices: where the minimiser is not on an arc, that is enough. Then the sectors around each axis are searched, and
-//! if that does not end the query either (a smooth body, a tolerance near roundoff), expansion has all the memory there is.
+//! Pairs are expanded as any, but only to [`PATIENCE`] vertices: where the minimiser is not on an arc, that is enough. Then the sectors around each axis
+//! are searched, and if that does not end the query either (a smooth body, a tolerance near roundoff), expansion has all the memory there
+//! is. Two bodies of revolution whose axes agree up to a small share of the tolerance are measured in a plane before (module `meridian`), at that charge.
 //!
 //! The rounding of the sectors' points, beside that of M's own: axes and azimuths are unit and orthogonal to 4 u, a point is split in two and put together again
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
 //! s only makes circles of the set's circles up to 4 s times their size.
 
-use super::{AXIS_ROUNDOFFS, Body, Depth, Pair, skew};
+use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
 use crate::answer::{Answer, Outcome};
 use crate::qset::Ball;
 use crate::query::Options;
@@ -17,8 +17,8 @@ use crate::sectors::{Search, Spin};
 use crate::solver::Solver;
 use crate::support::Symmetry;
 
-/// Two axes this near to one another, as an angle and as a share of the bodies' extents, have minimisers on an arc, or nearly so.
-const NEARLY_COAXIAL: f64 = 0.125;
+/// Two axes are as good as one if what they are off is this share of the relative tolerance.
+pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
 
 /// More vertices than expansion takes where no minimisers lie on an arc.
 const PATIENCE: usize = 48;
@@ -29,14 +29,22 @@ pub struct Turning<T: Real> {
     pub(super) depth: Route<T>,
 }
 
-type Route<T> =
-    fn(&mut Solver<'_, T, 3>, &mut Pair<'_, '_, T, 3>, u32, &Options<T, 3>, Option<&dyn Fn() -> bool>) -> Depth<T>;
+type Route<T> = fn(
+    &mut Solver<'_, T, 3>,
+    &mut Pair<'_, '_, T, 3>,
+    Option<Axis<T>>,
+    u32,
+    &Options<T, 3>,
+    Option<&dyn Fn() -> bool>,
+) -> Depth<T>;
 
 impl<T: Real> Turning<T> {
     /// For any set with [`Symmetry::Axis`].
     pub fn new() -> Self {
         Turning {
-            depth: |solver, pair, calls, options, interrupt| solver.depth_with_arcs(pair, calls, options, interrupt),
+            depth: |solver, pair, axis, calls, options, interrupt| {
+                solver.depth_with_arcs(pair, axis, calls, options, interrupt)
+            },
         }
     }
 
@@ -82,75 +90,91 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         let other = other.axis().map(|b| if b.dot(&axis) < T::zero() { -b } else { b });
         Some(Spin { axis, first, offset: self.offset, other })
     }
-
-    /// Do both bodies turn, about axes that are near to one another?
-    fn is_nearly_coaxial(&self, spin: &Spin<T>) -> bool {
-        spin.other.is_some_and(|other| self.aside(&spin.axis, &other) < T::of(NEARLY_COAXIAL))
-    }
 }
 
 impl<T: Real> Solver<'_, T, 3> {
     fn depth_with_arcs(
         &mut self,
         pair: &mut Pair<'_, '_, T, 3>,
+        axis: Option<Axis<T>>,
         mut calls: u32,
         options: &Options<T, 3>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T> {
-        let mut options = pair.aimed(options);
-        if let Some(answer) = self.search_arcs(pair, &mut calls, &options, interrupt, None) {
+        let options = pair.aimed(options);
+        if let Some(axis) = axis
+            && let Some(answer) = self.depth_near_axis(pair, &axis, &mut calls, &options, interrupt)
+        {
             return Depth::new(&answer, pair);
         }
-        let mut room = PATIENCE;
-        let mut before: Option<Answer<T, 3>> = None;
-        loop {
-            let ball = Ball::unit();
-            let (mut query, checked) = pair.query(&ball, calls, &options, interrupt);
-            if let Some(before) = &before {
-                query.resume(before);
-            }
-            let answer = self.bounded(room).expand_only((query, checked));
-            if room == usize::MAX || answer.outcome != Outcome::Capacity {
-                return self.conclude_pair(pair, answer, &options, interrupt);
-            }
-            room = usize::MAX;
-            (calls, options.guess) = (answer.support_calls, Some(answer.direction));
-            match self.search_arcs(pair, &mut calls, &options, interrupt, Some(&answer)) {
-                Some(answer) => return Depth::new(&answer, pair),
-                None => before = Some(answer),
-            }
+        let ball = Ball::unit();
+        let answer = self.bounded(PATIENCE).expand_only(pair.query(&ball, calls, &options, interrupt));
+        if answer.outcome != Outcome::Capacity {
+            return self.conclude_pair(pair, &answer, &options, interrupt);
         }
+        self.depth_on_arcs(pair, &answer, options, interrupt)
     }
 
-    /// The search around each axis; where no bracket is known yet, only for axes that are near to one another. Adds to the support calls.
+    /// Both bodies turn about nearly the same axis: is the answer in its plane good enough? Not near the poles, where no arc is left, and the witnesses
+    /// of one plane do not stand for the others.
+    #[cold]
+    fn depth_near_axis(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        axis: &Axis<T>,
+        calls: &mut u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Answer<T, 3>> {
+        let answer = self.depth_on_axis(pair, axis, calls, options, interrupt)?;
+        let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
+        (known && answer.direction.dot(&axis.along).abs() < T::of(0.99)).then_some(answer)
+    }
+
+    /// Expansion has spent its patience: the sectors, else expansion with all memory.
+    #[cold]
+    fn depth_on_arcs(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        before: &Answer<T, 3>,
+        mut options: Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T> {
+        let mut calls = before.support_calls;
+        options.guess = Some(before.direction);
+        if let Some(answer) = self.search_arcs(pair, &mut calls, &options, interrupt, before) {
+            return Depth::new(&answer, pair);
+        }
+        let ball = Ball::unit();
+        let (mut query, checked) = pair.query(&ball, calls, &options, interrupt);
+        query.resume(before);
+        let answer = self.expand_only((query, checked));
+        self.conclude_pair(pair, &answer, &options, interrupt)
+    }
+
+    /// The search around each axis, after an answer that did not suffice. Adds to the support calls.
     fn search_arcs(
         &mut self,
         pair: &mut Pair<'_, '_, T, 3>,
         calls: &mut u32,
         options: &Options<T, 3>,
         interrupt: Option<&dyn Fn() -> bool>,
-        known: Option<&Answer<T, 3>>,
+        known: &Answer<T, 3>,
     ) -> Option<Answer<T, 3>> {
-        let uncharged = (pair.error, pair.extra);
         for first in [true, false] {
             let Some(spin) = pair.spin(first) else { continue };
-            if known.is_none() && !pair.is_nearly_coaxial(&spin) {
-                continue;
-            }
             let off = (skew(&pair.a.rotation) + skew(&pair.b.rotation)) * T::count(4);
-            pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
+            let uncharged = pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
             let ball = Ball::unit();
             let (mut query, checked) = pair.query(&ball, *calls, options, interrupt);
-            if let Some(known) = known {
-                query.resume(known);
-            }
+            query.resume(known);
             let found = checked.and_then(|()| query.normalize()).and_then(|()| self.search_sectors(&mut query, &spin));
             let iterations = query.iterations;
             *calls = query.support_calls();
-            (pair.error, pair.extra) = uncharged;
-            match (found, known) {
-                (Ok(Search::Done(answer)), _) => return Some(answer),
-                (Ok(Search::Stopped(stop)), Some(known)) => {
+            pair.discharge(uncharged);
+            match found {
+                Ok(Search::Done(answer)) => return Some(answer),
+                Ok(Search::Stopped(stop)) => {
                     let outcome = stop.outcome(known.lower, known.upper, false, false);
                     return Some(Answer { outcome, iterations, support_calls: *calls, ..known.clone() });
                 }

@@ -256,22 +256,23 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Asks A along a unit direction, and keeps the upper bound if it is the best.
     pub fn support(&mut self, direction: &Vector<T, N>) -> Result<(Vertex<T, N>, T), Failure> {
-        let vertex = self.ask(direction)?;
-        let height = direction.dot(&vertex.point);
-        self.note(direction, height, &vertex.point)?;
-        Ok((vertex, height))
-    }
-
-    /// Asks A, and keeps no bound.
-    #[inline(always)]
-    pub fn ask(&mut self, direction: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
         self.support_calls = self.support_calls.saturating_add(1);
         let (point, witness) =
             if self.exhaustive { self.a.exhaustive(direction)? } else { self.a.support_with_witness(direction)? };
         let (point, witness) =
             if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
         self.see(&point)?;
-        Ok(Vertex { point, witness })
+        let height = direction.dot(&point);
+        self.note(direction, height, &point)?;
+        Ok((Vertex { point, witness }, height))
+    }
+
+    /// The same, but the best direction stays what it is.
+    pub fn ask(&mut self, direction: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
+        let best = (self.direction, self.point, self.height, self.gauge, self.ratio);
+        let found = self.support(direction);
+        (self.direction, self.point, self.height, self.gauge, self.ratio) = best;
+        found.map(|(vertex, _)| vertex)
     }
 
     /// Refuses a point that is not finite, and lets the margin grow with its norm.
