@@ -330,6 +330,9 @@ typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
 // What answers for a body without end. Not for functions of your own.
 typedef qdist_status (*qdist_unbounded)(const void *a, const void *b, const void *options, void *result);
 
+// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
+typedef void (*qdist_turning)(void);
+
 /* =========================================================== SOLVERS ===========================================================
  *
  * A solver lives in memory that you own: a static array, a stack frame, a heap block. It is made once and then used for any
@@ -451,6 +454,9 @@ typedef struct {
     uint32_t symmetry;
     // NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
+    // The search for arcs of minimisers around the axis: set by the body functions of cylinders, cones and ellipsoids of
+    // revolution. NULL for your own sets.
+    qdist_turning turning;
     // NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
     // capsules, points and hulls put it here. Called with set.user.
     qdist_height_f64 height;
@@ -1350,6 +1356,7 @@ typedef struct {
     float errors[3];
     uint32_t symmetry;
     qdist_unbounded unbounded;
+    qdist_turning turning;
     qdist_height_f32 height;
 } qdist_body_f32;
 

@@ -23,9 +23,12 @@ use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
 use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
+mod arcs;
 mod fine;
 pub(crate) mod half_space;
 
+use arcs::NEARLY_COAXIAL;
+pub use arcs::Turning;
 use fine::{Fine, Recorder};
 
 /// A 3 x 3 matrix.
@@ -257,7 +260,7 @@ struct Anchor<T: Real, const N: usize> {
 
 /// A - B, with B's anchor taken relative to A's, so that the error grows neither with the bodies' distance
 /// from the world's origin nor with that of their vertices from their frames'.
-struct Pair<'p, 'a, T: Real, const N: usize> {
+pub(crate) struct Pair<'p, 'a, T: Real, const N: usize> {
     a: &'p Body<'a, T, N>,
     b: &'p Body<'a, T, N>,
     on_a: Anchor<T, N>,
@@ -295,6 +298,29 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
             return Err(Failure(if said { TOO_LARGE } else { NOT_FINITE }));
         }
         Ok(Pair { a, b, on_a, on_b, offset, extent, error, extra: left })
+    }
+
+    /// Adds to the error, in all directions; returns what it was.
+    fn charge(&mut self, error: T) -> [T; 2] {
+        let before = [self.error, self.extra];
+        self.error += error;
+        self.extra += error;
+        before
+    }
+
+    /// Takes it away again.
+    fn discharge(&mut self, before: [T; 2]) {
+        [self.error, self.extra] = before;
+    }
+
+    /// The options, with the direction to look in first.
+    #[inline(always)]
+    fn aimed(&self, options: &Options<T, N>) -> Options<T, N> {
+        let mut options = *options;
+        if options.guess.is_none() && self.offset.iter().any(|&x| x != T::zero()) {
+            options.guess = Some(-self.offset);
+        }
+        options
     }
 
     /// The error along a unit vector, as [`axes`](Self::axes) tells it.
@@ -378,12 +404,30 @@ fn anchor_offset<T: Real, const N: usize>(
     (offset, terms * T::count(256) * T::ROUNDOFF * T::ROUNDOFF)
 }
 
-/// Lengths that the common axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
+/// Lengths that an axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
 const AXIS_ROUNDOFFS: usize = 64;
 
+/// The axis of two bodies of revolution, or of one and a ball.
+#[derive(Clone, Copy)]
+pub(crate) struct Axis<T: Real> {
+    /// A unit vector along the first body's.
+    along: Vector<T, 3>,
+    /// How far the second axis, or the second body's anchor, is off the first: the angle, plus the length as a share of the extents.
+    aside: T,
+    /// How far the matrices are from rotations.
+    stretched: T,
+}
+
+impl<T: Real> Axis<T> {
+    /// Is it theirs up to rounding?
+    fn is_common(&self) -> bool {
+        self.aside <= T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF
+    }
+}
+
 impl<T: Real> Pair<'_, '_, T, 3> {
-    /// The axis that both bodies turn about, if there is one up to rounding; the deviation goes into `error`.
-    fn common_axis(&mut self) -> Option<Vector<T, 3>> {
+    /// The axis that both bodies turn about, up to rounding or up to `near`.
+    fn axis(&self, near: T) -> Option<Axis<T>> {
         let axis = |body: &Body<'_, T>| body.rotation.column(2).into_owned();
         let (first, second) = match (self.a.shape.symmetry(), self.b.shape.symmetry()) {
             (Symmetry::Axis, Symmetry::Axis) => (axis(self.a), axis(self.b)),
@@ -391,24 +435,13 @@ impl<T: Real> Pair<'_, '_, T, 3> {
             (Symmetry::Full, Symmetry::Axis) => (axis(self.b), axis(self.b)),
             _ => return None,
         };
-        let allowed = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
-        // The angle, plus the length as a share of the extents.
         let aside = norm(&first.cross(&second)) + norm(&first.cross(&self.offset)) / self.extent;
-        if !(aside <= allowed) || self.on_a.center.is_some() || self.on_b.center.is_some() {
+        let roundoff = T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
+        if !(aside <= roundoff.at_least(near)) || self.on_a.center.is_some() || self.on_b.center.is_some() {
             return None;
         }
         let stretched = skew(&self.a.rotation).at_least(skew(&self.b.rotation));
-        if !(stretched <= allowed) {
-            return None;
-        }
-        // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
-        // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
-        // The roundoffs are those of measuring it.
-        let moved = aside + stretched + stretched + T::count(4) * T::ROUNDOFF;
-        let deviation = moved * T::of(2.1) * self.extent;
-        self.error += deviation;
-        self.extra += deviation;
-        Some(first * (T::one() / norm(&first)))
+        (stretched <= roundoff).then(|| Axis { along: first * (T::one() / norm(&first)), aside, stretched })
     }
 }
 
@@ -499,19 +532,41 @@ impl<T: Real> Solver<'_, T, 3> {
             Err(failure) => return Depth::failed(failure),
         };
         let mut calls = pair.calls();
-        if let Some(axis) = pair.common_axis() {
-            let ball = Ball::unit();
-            let (mut query, checked) = Query::new(&pair, &ball, pair.radius(), *options);
-            query.interrupt = interrupt;
-            query.count_calls(pair.calls());
-            if checked.and_then(|()| query.normalize()).is_ok()
-                && let Some(answer) = self.solve_meridian(&mut query, &axis)
-            {
-                return Depth::new(&answer, &pair);
-            }
-            calls = query.support_calls();
+        let axis = pair.axis(options.relative * T::of(NEARLY_COAXIAL));
+        if let Some(axis) = axis.filter(Axis::is_common)
+            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options, interrupt)
+        {
+            return Depth::new(&answer, &pair);
         }
-        self.expand_pair(&pair, calls, options, interrupt)
+        match a.shape.turning().or(b.shape.turning()) {
+            Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options, interrupt),
+            None => self.expand_pair(&pair, calls, options, interrupt),
+        }
+    }
+
+    /// The answer in a plane of the axis, as if both bodies turned about it: what they are off goes into the error. Adds to the support calls.
+    fn depth_on_axis(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        axis: &Axis<T>,
+        calls: &mut u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Answer<T, 3>> {
+        // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
+        // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
+        // The roundoffs are those of measuring it.
+        let moved = axis.aside + axis.stretched + axis.stretched + T::count(4) * T::ROUNDOFF;
+        let before = pair.charge(moved * T::of(2.1) * pair.extent);
+        let ball = Ball::unit();
+        let (mut query, checked) = Query::new(&*pair, &ball, pair.radius(), *options);
+        query.interrupt = interrupt;
+        query.count_calls(*calls);
+        let ready = checked.and_then(|()| query.normalize()).is_ok();
+        let answer = if ready { self.solve_meridian(&mut query, &axis.along) } else { None };
+        *calls = query.support_calls();
+        pair.discharge(before);
+        answer
     }
 }
 
@@ -579,16 +634,25 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T, N> {
         let ball = Ball::unit();
-        let mut options = *options;
-        if options.guess.is_none() && pair.offset.iter().any(|&x| x != T::zero()) {
-            options.guess = Some(-pair.offset);
-        }
+        let options = pair.aimed(options);
         let answer = self.expand_only(Pair::query(pair, &ball, calls, &options, interrupt));
+        self.conclude_pair(pair, &answer, &options, interrupt)
+    }
+
+    /// The answer, or that of a second look where it is open.
+    #[inline(always)]
+    fn conclude_pair(
+        &mut self,
+        pair: &Pair<'_, '_, T, N>,
+        answer: &Answer<T, N>,
+        options: &Options<T, N>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T, N> {
         if !answer.outcome.is_open() {
-            return Depth::new(&answer, pair);
+            return Depth::new(answer, pair);
         }
-        let second = self.look_again_at_pair(pair, &answer, &options, interrupt);
-        Depth::new(&second.unwrap_or(answer), pair)
+        let second = self.look_again_at_pair(pair, answer, options, interrupt);
+        Depth::new(second.as_ref().unwrap_or(answer), pair)
     }
 
     /// A second look (module `second_look`), at each body by itself.

@@ -49,8 +49,9 @@
 //!   margins are derived there.
 //! * **What a query does not need is not done.** Balls swept over a set (spheres, capsules, margins, and the ball that
 //!   rolls inside an ellipsoid) are added at the end, exactly, and where that leaves the cores apart their distance
-//!   (`distance`, GJK) is the whole answer. Bodies that turn about one axis are solved in a plane (`meridian`). Facets
-//!   above the best upper bound are never queued.
+//!   (`distance`, GJK) is the whole answer. Bodies that turn about one axis are solved in a plane (`meridian`), those
+//!   that nearly do, or of which one has a corner on the other's axis, sector by sector (`sectors`). Facets above the best upper
+//!   bound are never queued.
 //!
 //! # The house
 //!
@@ -60,6 +61,7 @@
 //! capi                          C ABI: include/qdist*.h
 //!  grasp  mesh                  contacts, friction, hands: wrench sets; triangle meshes: how far out (features)
 //!  depth  tracker  span  batch  prepare   two bodies in space; warm start; flat sets; many sets; vertex graphs of large hulls
+//!   sectors                     arcs of directions around the axis of a body of revolution
 //!   meridian                    two bodies on one axis
 //!    solver                     which plan, and the answer
 //!     plan                      rays, expansion (Algorithm 1), conewise expansion
@@ -116,6 +118,7 @@ pub mod qset;
 mod query;
 pub mod scalar;
 mod second_look;
+mod sectors;
 pub mod simplex;
 pub mod solver;
 mod span;

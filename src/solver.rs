@@ -129,6 +129,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         })
     }
 
+    #[inline(always)]
     pub(crate) fn expand_only(&mut self, (mut query, checked): (Query<'_, T, N>, Result<(), Failure>)) -> Answer<T, N> {
         match checked.and_then(|()| query.normalize()) {
             Ok(()) => self.expand_ready(&mut query),

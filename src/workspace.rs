@@ -133,6 +133,13 @@ pub(crate) unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &L
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
+    /// A solver with the same memory, of at most so many vertices.
+    pub(crate) fn bounded(&mut self, vertices: usize) -> Solver<'_, T, N> {
+        let (all, facets, queue) = self.polytope.memory();
+        let count = all.len().min(vertices);
+        Solver { polytope: Polytope::new(all.get_mut(..count).unwrap_or(&mut []), facets, queue) }
+    }
+
     /// A solver of a lower dimension in the same memory, with the same capacities; `None` when K is not lower.
     pub(crate) fn in_dimension<const K: usize>(&mut self) -> Option<Solver<'_, T, K>> {
         use core::slice::from_raw_parts_mut;

@@ -26,3 +26,6 @@ pub type qdist_unbounded = Option<
         result: *mut c_void,
     ) -> qdist_status,
 >;
+
+/// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
+pub type qdist_turning = Option<unsafe extern "C" fn()>;

@@ -19,11 +19,13 @@ use crate::bounds::Axes;
 use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Simplex, Vertex};
 
+mod chain;
 mod heap;
 mod insert;
 mod orthant;
 mod plane;
 
+pub use chain::Edge;
 pub use heap::{Entry, Heap};
 pub use insert::Insertion;
 
@@ -266,15 +268,6 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
             self.reach = norm(&vertex.point);
         }
         Some(index)
-    }
-
-    /// Stores a vertex at a position of an ordered chain of vertices.
-    pub fn insert_in_chain(&mut self, position: usize, vertex: Vertex<T, N>) -> Option<()> {
-        let mut carried = self.add_vertex(vertex).map(|_| vertex)?;
-        for slot in self.vertices.iter_mut().take(self.vertex_count).skip(position) {
-            core::mem::swap(slot, &mut carried);
-        }
-        Some(())
     }
 
     fn take_slot(&mut self) -> Option<Index> {

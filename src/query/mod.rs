@@ -1,7 +1,7 @@
 //! The state of one query: what has been asked of A and Q, the best upper bound so far, and how all of it becomes an
 //! [`Answer`].
 
-use crate::answer::{Plan, Stop};
+use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::{Axes, Bounds};
 use crate::qset::Gauge;
 use crate::scalar::{Real, Vector, finite};
@@ -184,6 +184,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             self.scale = scale;
             self.bounds.support_error *= scale;
             self.bounds.radius *= scale;
+            self.floor *= scale;
             self.options.absolute *= scale;
             self.options.threshold = self.options.threshold.map(|t| t * scale);
         }
@@ -202,6 +203,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         }
         let value = value / self.scale;
         if value.abs() < T::TINY { value + outward * T::TINY } else { value.at_least(-T::HUGE).at_most(T::HUGE) }
+    }
+
+    /// The factor that brings the caller's lengths to the query's.
+    pub fn scale(&self) -> T {
+        self.scale
     }
 
     /// The largest norm of a point seen, in the caller's units.
@@ -224,6 +230,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         if lower > T::zero() && lower < T::HUGE {
             self.raise(lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF);
         }
+    }
+
+    /// Goes on from another query of the same set: its lower bound holds, and its points count.
+    pub fn resume(&mut self, before: &Answer<T, N>) {
+        self.know(before.lower);
+        self.iterations = self.iterations.saturating_add(before.iterations);
     }
 
     /// The same in scaled units.
@@ -258,6 +270,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let height = direction.dot(&point);
         self.note(direction, height, &point)?;
         Ok((Vertex { point, witness }, height))
+    }
+
+    /// The same, but the best direction stays what it is.
+    pub fn ask(&mut self, direction: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
+        let best = (self.direction, self.point, self.height, self.gauge, self.ratio);
+        let found = self.support(direction);
+        (self.direction, self.point, self.height, self.gauge, self.ratio) = best;
+        found.map(|(vertex, _)| vertex)
     }
 
     /// Refuses a point that is not finite, and lets the margin grow with its norm.

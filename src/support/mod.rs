@@ -22,6 +22,7 @@
 
 use core::fmt;
 
+pub use crate::depth::Turning;
 pub use crate::depth::half_space::HalfSpace;
 use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, TwoWords, Vector};
@@ -143,6 +144,12 @@ pub trait Support<T: Real, const N: usize> {
     /// [`HalfSpace`] has that, and no other set can: the trait is not to be had elsewhere.
     #[doc(hidden)]
     fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
+        None
+    }
+
+    /// For a set whose [`symmetry`](Support::symmetry) is `Axis`: `Some(Turning::new())` has arcs of minimisers around its axis searched for (a corner of
+    /// the other body on the axis, a second axis nearby), which else need thousands of facets. Programs without such sets are spared that code.
+    fn turning(&self) -> Option<Turning<T>> {
         None
     }
 

@@ -14,7 +14,7 @@
 use core::fmt;
 
 use super::load::one_by_one;
-use super::{Failure, Support, Symmetry};
+use super::{Failure, Support, Symmetry, Turning};
 use crate::scalar::{Real, TwoWords, Vector};
 
 /// Why a shape cannot be built.
@@ -424,6 +424,9 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
             [x, y, _] if x == y => Symmetry::Axis,
             _ => Symmetry::None,
         }
+    }
+    fn turning(&self) -> Option<Turning<T>> {
+        (Support::<T, N>::symmetry(self) == Symmetry::Axis).then(Turning::new)
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true

@@ -2,7 +2,7 @@
 
 use super::load::one_by_one;
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
-use super::{Failure, Support, Symmetry};
+use super::{Failure, Support, Symmetry, Turning};
 use crate::scalar::{Real, TwoWords, Vector};
 
 /// A cylinder: `x^2 + y^2 <= radius^2`, `|z| <= half_height`. One square root and one division.
@@ -50,6 +50,9 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     }
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
+    }
+    fn turning(&self) -> Option<Turning<T>> {
+        Some(Turning::new())
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true
@@ -194,6 +197,9 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     }
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
+    }
+    fn turning(&self) -> Option<Turning<T>> {
+        Some(Turning::new())
     }
     fn mirrored(&self, signs: u8) -> bool {
         signs & 4 == 0

@@ -11,12 +11,12 @@ use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
 use super::super::symmetry::{
-    QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored, qdist_unbounded,
+    QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored, qdist_turning, qdist_unbounded,
 };
 use crate::Body;
 use crate::depth::{BodyError, Matrix3};
 use crate::scalar::{Real, TwoWords, Vector};
-use crate::support::{Failure, Support, Symmetry};
+use crate::support::{Failure, Support, Symmetry, Turning};
 use core::ffi::c_void;
 
 /// Writes a point of the core that is farthest along `direction` to `point`.
@@ -91,6 +91,9 @@ pub struct qdist_body_f32 {
     pub symmetry: u32,
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
+    /// The search for arcs of minimisers around the axis: set by the body functions of cylinders, cones and ellipsoids of
+    /// revolution. NULL for your own sets.
+    pub turning: qdist_turning,
     /// NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
     /// capsules, points and hulls put it here. Called with set.user.
     pub height: qdist_height_f32,
@@ -169,6 +172,7 @@ impl qdist_body_f32 {
             errors: [0.0; 3],
             symmetry: QDIST_SYMMETRY_NONE,
             unbounded: None,
+            turning: None,
             height: None,
         }
     }
@@ -244,6 +248,10 @@ impl Support<f32, 3> for CheckedBody {
             QDIST_SYMMETRY_FULL => Symmetry::Full,
             _ => Symmetry::None,
         }
+    }
+    fn turning(&self) -> Option<Turning<f32>> {
+        // SAFETY: what the header asks of the caller: NULL, or what a body function of this scalar type has written.
+        self.0.turning.map(|turning| unsafe { Turning::from_raw(turning) })
     }
     fn error(&self) -> f32 {
         self.0.set.stated_error(3)

@@ -16,7 +16,7 @@ use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use super::sets::{answer_height, arguments, qdist_body_f64, qdist_height_f64, qdist_set_f64, qdist_support_f64};
 use crate::scalar::{Real, TwoWords, Vector};
-use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry};
+use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry, Turning};
 use core::ffi::c_void;
 
 /// All points within `radius` of the origin.
@@ -137,9 +137,18 @@ unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f64, shape: *const S, support:
     let (made, set) = unsafe { set_of(shape, support) }?;
     let rolling_radius = set.rolling_radius();
     let symmetry = from_symmetry(set.symmetry());
+    let turning = set.turning().map(Turning::into_raw);
     let (extents, errors) = (set.extents().into(), set.errors().into());
     let height = height_of::<S, 3>(&set);
-    let made = qdist_body_f64 { symmetry, rolling_radius, extents, errors, height, ..qdist_body_f64::at_origin(made) };
+    let made = qdist_body_f64 {
+        symmetry,
+        rolling_radius,
+        turning,
+        extents,
+        errors,
+        height,
+        ..qdist_body_f64::at_origin(made)
+    };
     // SAFETY: not NULL, aligned, and the caller's promise.
     unsafe { put(body, made) };
     Ok(())

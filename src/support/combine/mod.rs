@@ -12,7 +12,7 @@
 use nalgebra::SMatrix;
 
 use super::shapes::above;
-use super::{Failure, Support, Symmetry};
+use super::{Failure, Support, Symmetry, Turning};
 use crate::depth::half_space::Unbounded;
 use crate::scalar::{Real, Vector};
 
@@ -119,6 +119,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     }
     fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
         (**self).unbounded()
+    }
+    fn turning(&self) -> Option<Turning<T>> {
+        (**self).turning()
     }
     fn mirrored(&self, signs: u8) -> bool {
         (**self).mirrored(signs)

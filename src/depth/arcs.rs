@@ -1,0 +1,186 @@
+//! Depth where a body turns about an axis: minimisers may lie on an arc around it (module `sectors`).
+//!
+//! Pairs are expanded as any, but only to [`PATIENCE`] vertices: where the minimiser is not on an arc, that is enough. Then the sectors around each axis
+//! are searched, and if that does not end the query either (a smooth body, a tolerance near roundoff), expansion has all the memory there
+//! is. Two bodies of revolution whose axes agree up to a small share of the tolerance are measured in a plane before (module `meridian`), at that charge.
+//!
+//! The rounding of the sectors' points, beside that of M's own: axes and azimuths are unit and orthogonal to 4 u, a point is split in two and put together again
+//! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
+//! s only makes circles of the set's circles up to 4 s times their size.
+
+use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
+use crate::answer::{Answer, Outcome};
+use crate::qset::Ball;
+use crate::query::Options;
+use crate::scalar::{Real, Vector, unit};
+use crate::sectors::{Search, Spin};
+use crate::solver::Solver;
+use crate::support::Symmetry;
+
+/// Two axes are as good as one if what they are off is this share of the relative tolerance.
+pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
+
+/// More vertices than expansion takes where no minimisers lie on an arc.
+const PATIENCE: usize = 48;
+
+/// For a body of revolution: how depth is found with one. A program that has no such body does not contain it.
+#[derive(Clone, Copy)]
+pub struct Turning<T: Real> {
+    pub(super) depth: Route<T>,
+}
+
+type Route<T> = fn(
+    &mut Solver<'_, T, 3>,
+    &mut Pair<'_, '_, T, 3>,
+    Option<Axis<T>>,
+    u32,
+    &Options<T, 3>,
+    Option<&dyn Fn() -> bool>,
+) -> Depth<T>;
+
+impl<T: Real> Turning<T> {
+    /// For any set with [`Symmetry::Axis`].
+    pub fn new() -> Self {
+        Turning {
+            depth: |solver, pair, axis, calls, options, interrupt| {
+                solver.depth_with_arcs(pair, axis, calls, options, interrupt)
+            },
+        }
+    }
+
+    /// As a pointer that C can carry.
+    #[cfg(feature = "capi")]
+    pub(crate) fn into_raw(self) -> unsafe extern "C" fn() {
+        // SAFETY: function pointers are alike; this one is not called before `from_raw` has turned it back.
+        unsafe { core::mem::transmute::<Route<T>, unsafe extern "C" fn()>(self.depth) }
+    }
+
+    /// Back from there.
+    ///
+    /// # Safety
+    /// The pointer comes from `into_raw` of the same scalar type.
+    #[cfg(feature = "capi")]
+    pub(crate) unsafe fn from_raw(raw: unsafe extern "C" fn()) -> Self {
+        // SAFETY: the caller's promise.
+        Turning { depth: unsafe { core::mem::transmute::<unsafe extern "C" fn(), Route<T>>(raw) } }
+    }
+}
+
+impl<T: Real> Default for Turning<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real> Body<'_, T> {
+    /// The axis that the placed body turns about, as far as its matrix is a rotation.
+    fn axis(&self) -> Option<Vector<T, 3>> {
+        let turns = self.shape.symmetry() == Symmetry::Axis && self.shape.center().is_none();
+        let rigid = || skew(&self.rotation) <= T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF;
+        (turns && rigid()).then(|| unit(&self.rotation.column(2).into_owned()))
+    }
+}
+
+impl<T: Real> Pair<'_, '_, T, 3> {
+    /// The first or the second body as the one whose arcs are searched for.
+    fn spin(&self, first: bool) -> Option<Spin<T>> {
+        let (body, other) = if first { (self.a, self.b) } else { (self.b, self.a) };
+        body.shape.turning()?;
+        let axis = body.axis()?;
+        let other = other.axis().map(|b| if b.dot(&axis) < T::zero() { -b } else { b });
+        Some(Spin { axis, first, offset: self.offset, other })
+    }
+}
+
+impl<T: Real> Solver<'_, T, 3> {
+    fn depth_with_arcs(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        axis: Option<Axis<T>>,
+        mut calls: u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T> {
+        let options = pair.aimed(options);
+        if let Some(axis) = axis
+            && let Some(answer) = self.depth_near_axis(pair, &axis, &mut calls, &options, interrupt)
+        {
+            return Depth::new(&answer, pair);
+        }
+        let ball = Ball::unit();
+        let answer = self.bounded(PATIENCE).expand_only(Pair::query(pair, &ball, calls, &options, interrupt));
+        if answer.outcome != Outcome::Capacity {
+            return self.conclude_pair(pair, &answer, &options, interrupt);
+        }
+        self.depth_on_arcs(pair, &answer, options, interrupt)
+    }
+
+    /// Both bodies turn about nearly the same axis: is the answer in its plane good enough? Not near the poles, where no arc is left, and the witnesses
+    /// of one plane do not stand for the others.
+    #[cold]
+    fn depth_near_axis(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        axis: &Axis<T>,
+        calls: &mut u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Option<Answer<T, 3>> {
+        let answer = self.depth_on_axis(pair, axis, calls, options, interrupt)?;
+        let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
+        (known && answer.direction.dot(&axis.along).abs() < T::of(0.99)).then_some(answer)
+    }
+
+    /// Expansion has spent its patience: the sectors, else expansion with all memory.
+    #[cold]
+    fn depth_on_arcs(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        before: &Answer<T, 3>,
+        mut options: Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+    ) -> Depth<T> {
+        let mut calls = before.support_calls;
+        options.guess = Some(before.direction);
+        if let Some(answer) = self.search_arcs(pair, &mut calls, &options, interrupt, before) {
+            return Depth::new(&answer, pair);
+        }
+        let ball = Ball::unit();
+        let (mut query, checked) = Pair::query(pair, &ball, calls, &options, interrupt);
+        query.resume(before);
+        let answer = self.expand_only((query, checked));
+        self.conclude_pair(pair, &answer, &options, interrupt)
+    }
+
+    /// The search around each axis, after an answer that did not suffice. Adds to the support calls.
+    fn search_arcs(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        calls: &mut u32,
+        options: &Options<T, 3>,
+        interrupt: Option<&dyn Fn() -> bool>,
+        known: &Answer<T, 3>,
+    ) -> Option<Answer<T, 3>> {
+        for first in [true, false] {
+            let Some(spin) = pair.spin(first) else { continue };
+            let off = (skew(&pair.a.rotation) + skew(&pair.b.rotation)) * T::count(4);
+            let uncharged = pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
+            let ball = Ball::unit();
+            let (mut query, checked) = Pair::query(pair, &ball, *calls, options, interrupt);
+            query.resume(known);
+            let found = checked.and_then(|()| query.normalize()).and_then(|()| self.search_sectors(&mut query, &spin));
+            let iterations = query.iterations;
+            *calls = query.support_calls();
+            pair.discharge(uncharged);
+            match found {
+                Ok(Search::Done(answer)) => return Some(answer),
+                Ok(Search::Stopped(stop)) => {
+                    let outcome = stop.outcome(known.lower, known.upper, false, false);
+                    return Some(Answer { outcome, iterations, support_calls: *calls, ..known.clone() });
+                }
+                _ => {}
+            }
+        }
+        None
+    }
+}

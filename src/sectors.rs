@@ -1,0 +1,327 @@
+//! Arcs of minimisers: a search sector by sector around the axis of a body of revolution.
+//!
+//! Where a corner or an edge of one body lies on the axis of a cylinder, a cone or a disc, or two bodies of revolution are nearly
+//! coaxial, the minimisers of h_M are an arc of directions around the axis, or so near to one that expansion in space must tile
+//! it: to a relative 1e-6 with thousands of facets. But the rim that makes the arc is known. Let C be the body
+//! of revolution, a its axis, e(w) the unit vector across a at azimuth w, and M = K + C with K all the rest (the other body and the
+//! offset; which of the two is subtracted does not matter here). A direction of azimuth w is u = s e(w) + c a with s >= 0.
+//!
+//! # A sector is a plane problem
+//!
+//! Let W be a sector of azimuths. A support call finds a point p + c of M, p in K, c in C. C contains the whole circle of c about the
+//! axis, so for every u of the sector
+//!
+//! ```text
+//! h_M(u) >= s (min over W of e.p + |c across a|) + c (a.p + a.c)
+//! ```
+//!
+//! which is the value at (s, c) of *one* point of the half plane. A chain of such points, its offsets at least d, proves h_M >= d on all of the sector
+//! (module `meridian`, whose argument asks nothing else). What is lost is what p varies over the sector: nothing for a p on the axis, and next
+//! to nothing near it. So a corner on the axis is done at once, with one sector around all the axis, and a corner d off the axis
+//! costs about log2(d / tolerance) halvings near the best azimuth. There is no threshold, hence no cliff.
+//!
+//! When K turns about an axis b of its own, it contains a circle too: centre q on b, radius r, through p. At azimuth w take in its disc
+//!
+//! ```text
+//! q + r v,    v = k (z - b (b.z)),    z = s e(w) + c a,    k <= 1 / |z - b (b.z)| on all of W
+//! ```
+//!
+//! for the (s, c) that was asked. With g = b.z and t = b.e(w), its radius e.v = k (s - t g) and height a.v = k (c - (a.b) g) vary as t does: by the
+//! tilt of b against a, times the width of the sector. The height counts with its lowest value in the upper part of the chain, and
+//! with its highest in the lower part: each part has its own.
+//!
+//! # Minima over a sector
+//!
+//! W lies between two unit vectors e, f less than a straight angle apart, so e(w) = (x e + y f) / |x e + y f| with x, y >= 0, and
+//! (x + y) cos(half the angle) <= |x e + y f| <= x + y. Hence, with m the lower of v.e and v.f,
+//!
+//! ```text
+//! min over W of v.e(w) >= m  where m >= 0,  else the higher of m / cos(half the angle) and -|v across a|
+//! ```
+//!
+//! Neighbouring sectors share the vector between them, number for number: rounding leaves no gap. (A vector that is off the plane across a, or not quite of
+//! unit length, by some roundoffs moves v.e by so many of |v|, which the margin includes: module `depth::arcs`.)
+//!
+//! # The search
+//!
+//! Depth first around the circle: first the circle as one sector, then quarters from the best azimuth that is known, halved until the chain of each has offsets that end the query. Every call of
+//! the chain is one of M too, and may lower the upper bound. No memory is needed but that of one chain. Directions without an arc, where M is smooth or has corners off the
+//! axis, need small sectors; the search gives up after [`CALLS`], and expansion goes on.
+
+use crate::answer::{Answer, Plan, Stop};
+use crate::distance::nearest;
+use crate::meridian::{Section, across, trace};
+use crate::query::Query;
+use crate::scalar::{Real, Vector, norm, unit};
+use crate::simplex::{Simplex, Vertex};
+use crate::solver::Solver;
+use crate::support::Failure;
+use heapless::Vec;
+
+/// Support calls that a search may take.
+const CALLS: u32 = 2048;
+
+/// Steps of the search for a good azimuth.
+const TURNS: usize = 32;
+
+/// How far the directions are leant aside that find both ends of a line.
+const LEAN: f64 = 1e-4;
+
+/// A sector of the circle is halved so many times at most.
+const HALVINGS: usize = 40;
+
+/// The bodies, as the search sees them.
+pub(crate) struct Spin<T: Real> {
+    /// The axis of C, a unit vector.
+    pub axis: Vector<T, 3>,
+    /// Is C the first body?
+    pub first: bool,
+    /// The anchor of A minus that of B, in the caller's units.
+    pub offset: Vector<T, 3>,
+    /// The unit axis b of the other body, if it turns about one; with a.b >= 0.
+    pub other: Option<Vector<T, 3>>,
+}
+
+/// How a search by sectors ended.
+pub(crate) enum Search<T: Real> {
+    /// With the answer.
+    Done(Answer<T, 3>),
+    /// At a limit.
+    Stopped(Stop),
+    /// Not at all.
+    Failed,
+}
+
+/// Azimuths between two of them, or all.
+struct Sector<'s, T: Real> {
+    spin: &'s Spin<T>,
+    /// `offset` in the query's units.
+    offset: Vector<T, 3>,
+    ends: [Vector<T, 3>; 2],
+    /// Cosine of half the angle between them; 0: the sector is the whole circle.
+    cosine: T,
+    middle: Vector<T, 3>,
+}
+
+impl<T: Real> Sector<'_, T> {
+    /// A lower bound of v.e over all azimuths e.
+    fn least(&self, v: &Vector<T, 3>) -> T {
+        let across = -norm(&(v - self.spin.axis * v.dot(&self.spin.axis)));
+        let [e, f] = &self.ends;
+        let m = v.dot(e).at_most(v.dot(f));
+        if !(self.cosine > T::zero()) {
+            across
+        } else if m >= T::zero() {
+            m
+        } else {
+            across.at_least(m / self.cosine)
+        }
+    }
+
+    /// The part of a point of M that belongs to K, and the part of C.
+    fn split(&self, vertex: &Vertex<T, 3>) -> [Vector<T, 3>; 2] {
+        let Vertex { point, witness } = vertex;
+        if self.spin.first {
+            [point - witness, *witness]
+        } else {
+            [witness + self.offset, point - witness - self.offset]
+        }
+    }
+
+    /// The point of the half plane for a point of M that was found along `direction`: radius, height, and height downwards.
+    fn flatten(&self, vertex: &Vertex<T, 3>, direction: &Vector<T, 3>) -> Vector<T, 3> {
+        let axis = &self.spin.axis;
+        let [rest, turning] = self.split(vertex);
+        let height = turning.dot(axis);
+        let radius = norm(&(turning - axis * height));
+        let own = Vector::<T, 3>::new(radius, height, -height);
+        let (r, h) = (self.least(&rest), rest.dot(axis));
+        let fixed = Vector::<T, 3>::new(r, h, -h);
+        let best = match &self.spin.other {
+            Some(b) => {
+                let ring = self.ring(&rest, b, direction);
+                if self.score(&ring, direction) >= self.score(&fixed, direction) { ring } else { fixed }
+            }
+            None => fixed,
+        };
+        own + best
+    }
+
+    /// What a point is worth along a direction; with some weight on the radius, which counts for all others near the equator.
+    fn score(&self, place: &Vector<T, 3>, direction: &Vector<T, 3>) -> T {
+        let up = direction.dot(&self.spin.axis);
+        let height = if up >= T::zero() { up * place.y } else { -up * place.z };
+        (direction.dot(&self.middle) + T::of(0.0625)) * place.x + height
+    }
+
+    /// The same for the circle of the point about the axis b.
+    fn ring(&self, point: &Vector<T, 3>, b: &Vector<T, 3>, direction: &Vector<T, 3>) -> Vector<T, 3> {
+        let axis = &self.spin.axis;
+        let from = point - self.offset;
+        let along = from.dot(b);
+        let radius = norm(&(from - b * along));
+        let center = self.offset + b * along;
+        let (s, c) = (direction.dot(&self.middle).at_least(T::zero()), direction.dot(axis));
+        let cosine = axis.dot(b);
+        // t and g over the sector.
+        let ends = [self.least(b), -self.least(&-b)];
+        let [low, high] = ends.map(|t| s * t + c * cosine);
+        let nearest = if low > T::zero() { low } else { (-high).at_least(T::zero()) };
+        let square = (T::one() - nearest) * (T::one() + nearest);
+        // (Along b any point of the disc is as good as another: take the centre.)
+        let slack = T::count(8) * T::ROUNDOFF / square.at_least(T::TINY);
+        let k = if square > T::of(1e-4) { radius / square.root() * (T::one() - slack) } else { T::zero() };
+        let inward = (ends[0] * low).at_least(ends[1] * high);
+        let height = center.dot(axis);
+        // (The differences are off by some roundoffs of 1, and k may be large: near b.)
+        let rounding = k * (T::count(8) * T::ROUNDOFF);
+        Vector::<T, 3>::new(
+            self.least(&center) + k * (s - inward) - rounding,
+            height + k * (c - cosine * high) - rounding,
+            k * (cosine * low - c) - height - rounding,
+        )
+    }
+}
+
+impl<T: Real> Section<T> for Sector<'_, T> {
+    fn frame(&self) -> (&Vector<T, 3>, &Vector<T, 3>) {
+        (&self.spin.axis, &self.middle)
+    }
+    fn ask(&self, query: &mut Query<'_, T, 3>, direction: &Vector<T, 3>) -> Result<Vertex<T, 3>, Failure> {
+        let (vertex, _) = query.support(direction)?;
+        Ok(Vertex { point: self.flatten(&vertex, direction), witness: vertex.witness })
+    }
+    fn place(&self, vertex: &Vertex<T, 3>, upper: bool) -> [T; 2] {
+        [vertex.point.x, if upper { vertex.point.y } else { vertex.point.z }]
+    }
+    fn judge(&self, query: &mut Query<'_, T, 3>, offset: T) -> Result<Option<Stop>, Failure> {
+        let enough = offset + query.bounds.radius >= query.level(T::zero(), T::zero());
+        Ok(enough.then_some(Stop::Met))
+    }
+}
+
+impl<T: Real> Solver<'_, T, 3> {
+    /// The search around the axis of `spin`. The query's error includes what the axes are off (module `depth`).
+    pub(crate) fn search_sectors(&mut self, query: &mut Query<'_, T, 3>, spin: &Spin<T>) -> Result<Search<T>, Failure> {
+        let axis = spin.axis;
+        let limit = query.support_calls().saturating_add(CALLS);
+        let poles = [-axis, axis];
+        let guess = query.first_direction();
+        query.support(&guess)?;
+        let raw = [query.support(&poles[0])?.0, query.support(&poles[1])?.0];
+        if query.is_at_zero() {
+            return Ok(Search::Failed);
+        }
+        let mut start = azimuth(query, &axis);
+        let offset = spin.offset * query.scale();
+        let mut lower = T::HUGE;
+        let mut left = start;
+        // The right ends of the sectors that are not done; none: the whole circle comes first.
+        let mut right = Vec::<Vector<T, 3>, { HALVINGS + 4 }>::new();
+        loop {
+            let (ends, cosine, middle) = match right.last() {
+                None => ([start, start], T::zero(), start),
+                Some(end) => {
+                    let sum = left + end;
+                    ([left, *end], norm(&sum) * T::of(0.5), unit(&sum))
+                }
+            };
+            let sector = Sector { spin, offset, ends, cosine, middle };
+            let [lowest, highest] = [0, 1].map(|i| Vertex { point: sector.flatten(&raw[i], &poles[i]), ..raw[i] });
+            let farthest = sector.ask(query, &middle)?;
+            let least = sector.place(&lowest, false)[1].at_most(sector.place(&highest, true)[1]);
+            if sector.judge(query, least)?.is_none() {
+                // The axis itself is (nearly) the best direction: no arc around it.
+                return Ok(Search::Failed);
+            }
+            let traced = trace(&mut self.polytope, query, &sector, [lowest, farthest, highest])?;
+            match traced {
+                Some(traced) if traced.stop == Stop::Met => {
+                    lower = lower.at_most(traced.offset);
+                    left = ends[1];
+                    right.pop();
+                    if right.is_empty() {
+                        break;
+                    }
+                }
+                Some(traced) if !matches!(traced.stop, Stop::Rounding | Stop::Capacity) => {
+                    return Ok(Search::Stopped(traced.stop));
+                }
+                _ if right.is_empty() => {
+                    turn_down(query, &axis)?;
+                    start = azimuth(query, &axis);
+                    left = start;
+                    let side = unit(&axis.cross(&start));
+                    for end in [start, -side, -start, side] {
+                        let _ = right.push(end);
+                    }
+                }
+                _ => {
+                    if query.support_calls() > limit || right.push(middle).is_err() {
+                        return Ok(Search::Failed);
+                    }
+                }
+            }
+        }
+        if !query.verify()? {
+            return Ok(Search::Failed);
+        }
+        let Some(lower) = query.lower_from_offset(lower, query.margin()) else { return Ok(Search::Failed) };
+        let witness = witness(query, &axis)?;
+        // Witnesses that are short of the plane by more than the tolerance are none: expansion finds better ones.
+        let foot = query.foot().unwrap_or_else(Vector::zeros);
+        if !(query.direction.dot(&(foot - witness.point())) <= query.slack()) {
+            return Ok(Search::Failed);
+        }
+        query.plan = Plan::Meridian;
+        let answer = self.report(query, Stop::Met, lower, witness);
+        // (What the axes are off is charged in all directions: too much where bodies are uneven.)
+        Ok(if answer.outcome.is_open() { Search::Failed } else { Search::Done(answer) })
+    }
+}
+
+/// The azimuth of the best direction.
+fn azimuth<T: Real>(query: &Query<'_, T, 3>, axis: &Vector<T, 3>) -> Vector<T, 3> {
+    let level = query.direction - axis * axis.dot(&query.direction);
+    if norm(&level) > T::of(0.01) { unit(&(level - axis * axis.dot(&level))) } else { across(axis) }
+}
+
+/// Turns the best direction about the axis as long as that lowers the upper bound: the sectors are the fewer, the better it is.
+fn turn_down<T: Real>(query: &mut Query<'_, T, 3>, axis: &Vector<T, 3>) -> Result<(), Failure> {
+    let mut tangent = T::one();
+    for _ in 0..TURNS {
+        let (best, before) = (query.direction, query.ratio());
+        let up = axis * axis.dot(&best);
+        let cosine = T::one() / (T::one() + tangent * tangent).root();
+        for sign in [T::one(), -T::one()] {
+            let level = best - up + axis.cross(&best) * (tangent * sign);
+            query.support(&unit(&(up + level * cosine)))?;
+        }
+        if !(query.ratio() < before) {
+            tangent *= T::of(0.5);
+        }
+    }
+    Ok(())
+}
+
+/// Points of M around the point where the best direction's plane touches the ball of radius d: first the two ends of what C has there across the
+/// arc, a line in most cases, then what a walk finds.
+fn witness<T: Real>(query: &mut Query<'_, T, 3>, axis: &Vector<T, 3>) -> Result<Simplex<T, 3>, Failure> {
+    let foot = query.foot().unwrap_or_else(Vector::zeros);
+    let direction = query.direction;
+    let near = query.slack() * T::of(0.25);
+    let mut ask = |u: &Vector<T, 3>| query.ask(u).map(|vertex| Vertex { point: vertex.point - foot, ..vertex });
+    let lean = axis * T::of(LEAN);
+    let mut simplex = Simplex::new(ask(&unit(&(direction + lean)))?);
+    simplex.push(ask(&unit(&(direction - lean)))?);
+    simplex.minimize(T::zero());
+    let distance = norm(&simplex.point());
+    if distance > near {
+        let found = nearest(&direction, None, ask, |_, distance| distance <= near)?;
+        if found.distance < distance {
+            simplex = found.simplex;
+        }
+    }
+    simplex.translate(&foot);
+    Ok(simplex)
+}
