@@ -224,7 +224,8 @@ fn cubes_of_any_size_the_format_has() {
                 &Body::at(&cube, Vector::from([at, s * T::of(0.125), T::zero()])),
             );
             let share = |x: T| (x / s).to_f64();
-            assert!(share(d.lower) <= 0.125 && 0.125 <= share(d.upper), "{e} {d:?}");
+            let truth = s + s - at; // Exactly.
+            assert!(d.lower <= truth && truth <= d.upper, "{e} {d:?}");
             assert!(share(d.upper - d.lower) <= tolerance && (d.normal.x.to_f64() - 1.0).abs() < 1e-5, "{e} {d:?}");
         }
     }

@@ -22,7 +22,8 @@
 //!
 //! For the lower one, move each vertex v straight to its v' as under "By direction" there: no facet crosses the origin on the way, since every facet
 //! has e_F > m, and afterwards λB misses each of them, by its old plane or by the new one; any n will do for that.
-//! For n the plane through the v' of a facet is taken: its normal in one word, corrected once by the heights that this leaves.
+//! For n the plane through the v' of a facet is taken: its normal in one word, corrected once by the heights that this leaves. The upper bound is
+//! proved by the direction that is reported, which is n in one word, and is as good as that: within half a roundoff of the bodies' size.
 //!
 //! # Cores that are apart
 //!
@@ -33,7 +34,7 @@
 //! d >= r - |x'|,     |x'| <= |n.x'| / |n| + p^2 / (2 |n.x'|)     -n.x' <= max of -n.v'
 //! ```
 //!
-//! For p one word is enough, since it is squared: p is as small as the margin. The upper bound is the one above; to tilt n along the vertices costs a roundoff of their size, but
+//! x' is added up in two words: p is then as small as the weights are good, and squared. The upper bound is the one above; to tilt n along the vertices costs a roundoff of their size, but
 //! across only the square of one. So n is corrected for equal heights of the vertices, as it is for a facet.
 //!
 //! # Errors
@@ -252,17 +253,17 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
         let (n, scale) = (answer.direction, self.query.scale());
         let points = self.points(&answer.witness)?;
         let level = self.level(&n, &answer.witness, &points)?;
-        let nearest = answer.witness.point();
+        let nearest = self.combination(&answer.witness, &points);
         let distance = -n.dot(&nearest);
-        let margin = self.query.margin() / scale;
-        let aside = norm(&(nearest + n * distance)) + margin * T::count(4);
+        let blur = self.error * T::count(4) + norm(&nearest) * (T::count(16) * T::ROUNDOFF);
+        let aside = norm(&(nearest + n * distance)) * T::of(1.01) + blur;
         let least = distance - aside;
         if !(least > T::zero()) {
             return None;
         }
         let lower = (level.lower(&points) - aside * (aside / least)) * scale;
-        let upper = level.upper()? * scale;
-        let direction = (upper < before.upper).then(|| level.n.high + level.n.low);
+        let (normal, upper) = self.upper(&level)?;
+        let direction = (upper < before.upper).then_some(normal);
         Some((Bracket { lower: before.lower.at_least(lower), upper: before.upper.at_most(upper) }, direction))
     }
 
@@ -275,9 +276,9 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
         for _ in 0..ATTEMPTS {
             let corners = self.corners(start);
             let level = self.level(&start.normal, &corners, &self.points(&corners)?)?;
-            let upper = level.upper()? * self.query.scale();
+            let (normal, upper) = self.upper(&level)?;
             if upper < best.0.upper {
-                best = (Bracket { upper, ..best.0 }, Some(level.n.high + level.n.low));
+                best = (Bracket { upper, ..best.0 }, Some(normal));
             }
             let (lower, lowest) = self.lower(&level, best.0.upper)?;
             best.0.lower = best.0.lower.at_least(lower);
@@ -287,6 +288,13 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
             }
         }
         Some(best)
+    }
+
+    /// The upper bound that is proved by the normal as it will be reported, in one word.
+    fn upper(&self, level: &Level<'p, 'b, 'a, T, N>) -> Option<(Vector<T, N>, T)> {
+        let normal = level.n.high + level.n.low;
+        let upper = Level::new(self.recorder.pair, TwoWords::from(normal), self.error).upper()?;
+        Some((normal, upper * self.query.scale()))
     }
 
     /// What one word says of a facet; `None` where it may be at the origin.
@@ -313,6 +321,22 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     /// The points behind a simplex's corners, which are in the bodies' unit.
     fn points(&self, simplex: &Simplex<T, N>) -> Option<Vec<Behind<T, N>, MAX_CORNERS>> {
         simplex.corners.iter().map(|corner| self.recorder.behind(&corner.vertex.point)).collect()
+    }
+
+    /// Their combination with the corners' weights.
+    fn combination(&self, simplex: &Simplex<T, N>, points: &[Behind<T, N>]) -> Vector<T, N> {
+        Vector::from_fn(|i, _| {
+            let mut axis = Vector::<T, N>::zeros();
+            axis[i] = T::one();
+            let along = Level::new(self.recorder.pair, TwoWords::from(axis), self.error);
+            let mut sum = Accumulator::new(T::zero());
+            for (corner, point) in simplex.corners.iter().zip(points) {
+                let (high, low) = along.height(point).parts();
+                sum.add_product(corner.weight, high);
+                sum.add_product(corner.weight, low);
+            }
+            sum.value()
+        })
     }
 
     /// The corners of a facet, in the bodies' unit.

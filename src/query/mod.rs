@@ -191,11 +191,6 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         Ok(())
     }
 
-    /// What lengths are multiplied by: a power of two.
-    pub fn scale(&self) -> T {
-        self.scale
-    }
-
     /// A bound in the caller's units, rounded outwards where it becomes subnormal.
     fn unscaled(&self, value: T, outward: T) -> T {
         if self.scale == T::one() || value.abs() >= T::HUGE {
