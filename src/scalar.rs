@@ -157,7 +157,8 @@ impl<T: Real> Accumulator<T> {
         self.sum = sum;
     }
 
-    /// Adds a product.
+    /// Adds a product. (Never where time counts; inlined into every loop it would be half of a small program.)
+    #[inline(never)]
     pub fn add_product(&mut self, a: T, b: T) {
         let halves = |x: T| {
             let c = T::SPLIT * x;

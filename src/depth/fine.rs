@@ -96,6 +96,7 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
     }
 
     /// The points of both bodies behind a vertex, in their frames.
+    #[inline(never)]
     fn behind(&self, vertex: &Vector<T, N>) -> Option<Behind<T, N>> {
         let calls = self.calls.try_borrow().ok()?;
         let call = calls.iter().find(|call| call.point == *vertex)?;
@@ -154,6 +155,7 @@ struct Level<'p, 'b, 'a, T: Real, const N: usize> {
 
 impl<'p, 'b, 'a, T: Real, const N: usize> Level<'p, 'b, 'a, T, N> {
     /// For a vector that is a unit vector but for rounding.
+    #[inline(never)]
     fn new(pair: &'p Pair<'b, 'a, T, N>, n: TwoWords<T, N>, error: T) -> Self {
         let mut squared = Accumulator::new(-T::one());
         let mut apart = Accumulator::new(T::zero());
@@ -173,6 +175,7 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Level<'p, 'b, 'a, T, N> {
     }
 
     /// The distance that a height stands for, with the ball terms, and its error, in the bodies' unit.
+    #[inline(never)]
     fn distance(&self, mut height: Accumulator<T>) -> (T, T) {
         let shrink = height.value() * self.excess;
         height.add(-shrink);
@@ -183,6 +186,7 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Level<'p, 'b, 'a, T, N> {
     }
 
     /// n.v' of the point behind a vertex.
+    #[inline(never)]
     fn height(&self, [a, b]: &Behind<T, N>) -> Accumulator<T> {
         let mut sum = self.apart;
         for i in 0..N {
@@ -251,7 +255,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     /// For cores that are apart: see "Cores that are apart".
     fn by_nearest(&self, before: &Bracket<T>, answer: &Answer<T, N>) -> Option<(Bracket<T>, Option<Vector<T, N>>)> {
         let (n, scale) = (answer.direction, self.query.scale());
-        let points = self.points(&answer.witness)?;
+        let points = self.ends(&answer.witness)?;
         let level = self.level(&n, &answer.witness, &points)?;
         let nearest = self.combination(&answer.witness, &points);
         let distance = -n.dot(&nearest);
@@ -275,7 +279,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
         let mut start = self.widest(before.upper)?;
         for _ in 0..ATTEMPTS {
             let corners = self.corners(start);
-            let level = self.level(&start.normal, &corners, &self.points(&corners)?)?;
+            let level = self.level(&start.normal, &corners, &self.ends(&corners)?)?;
             let (normal, upper) = self.upper(&level)?;
             if upper < best.0.upper {
                 best = (Bracket { upper, ..best.0 }, Some(normal));
@@ -291,6 +295,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     }
 
     /// The upper bound that is proved by the normal as it will be reported, in one word.
+    #[inline(never)]
     fn upper(&self, level: &Level<'p, 'b, 'a, T, N>) -> Option<(Vector<T, N>, T)> {
         let normal = level.n.high + level.n.low;
         let upper = Level::new(self.recorder.pair, TwoWords::from(normal), self.error).upper()?;
@@ -319,8 +324,13 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     }
 
     /// The points behind a simplex's corners, which are in the bodies' unit.
-    fn points(&self, simplex: &Simplex<T, N>) -> Option<Vec<Behind<T, N>, MAX_CORNERS>> {
-        simplex.corners.iter().map(|corner| self.recorder.behind(&corner.vertex.point)).collect()
+    #[inline(never)]
+    fn ends(&self, simplex: &Simplex<T, N>) -> Option<Vec<Behind<T, N>, MAX_CORNERS>> {
+        let mut points = Vec::new();
+        for corner in &simplex.corners {
+            points.push(self.recorder.behind(&corner.vertex.point)?).ok()?;
+        }
+        Some(points)
     }
 
     /// Their combination with the corners' weights.
@@ -340,6 +350,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     }
 
     /// The corners of a facet, in the bodies' unit.
+    #[inline(never)]
     fn corners(&self, facet: &Facet<T, N>) -> Simplex<T, N> {
         let mut corners = self.polytope.corners(facet);
         corners.rescale(T::one() / self.query.scale());
@@ -347,6 +358,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     }
 
     /// Heights along the vector next to `normal` along which the points behind these corners are equally high.
+    #[inline(never)]
     fn level(
         &self,
         normal: &Vector<T, N>,
@@ -381,7 +393,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
             let is_enough = |lower: T| self.query.is_met(&Bracket { lower, upper });
             if !is_enough(bound) {
                 let corners = self.corners(facet);
-                if let Some(points) = self.points(&corners) {
+                if let Some(points) = self.ends(&corners) {
                     bound = bound.at_least(level.lower(&points) * self.query.scale());
                     if !is_enough(bound)
                         && let Some(own) = self.level(&facet.normal, &corners, &points)
