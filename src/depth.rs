@@ -667,7 +667,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Option<Answer<T, N>> {
         let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
         let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
-        let shallow = is_shallow(answer) && Recorder::new(pair).is_some();
+        // (A normal in one word proves an upper bound to half a roundoff of the bodies' size: where that is too much, two do not help.)
+        let width = options.absolute.at_least(options.relative * answer.upper);
+        let tellable = width >= pair.extent * (T::of(0.25) * T::ROUNDOFF);
+        let shallow = tellable && is_shallow(answer) && Recorder::new(pair).is_some();
         if !finer && !shallow && asks == [false; 2] {
             return None;
         }

@@ -160,6 +160,9 @@ impl<T: Real> Accumulator<T> {
     /// Adds a product. (Never where time counts; inlined into every loop it would be half of a small program.)
     #[inline(never)]
     pub fn add_product(&mut self, a: T, b: T) {
+        if a == T::zero() || b == T::zero() {
+            return; // Low words and axes often are.
+        }
         let halves = |x: T| {
             let c = T::SPLIT * x;
             let high = c - (c - x);
