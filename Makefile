@@ -19,7 +19,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg clean
 all: lib
 
 lib:
@@ -48,6 +48,11 @@ header-check:
 	@echo "checking that src/capi/f32/ and include/ are fresh"
 	@scripts/f32.sh --check
 	@scripts/header.sh --check
+
+margins:
+	$(need)
+	@echo "taking each rounding margin away, to see a test fail (takes about ten minutes)"
+	@scripts/margins.py
 
 demo: lib
 	@echo "building and running examples/depth.c"

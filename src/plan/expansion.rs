@@ -152,7 +152,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         while start.missing() > 0 {
             let direction = start.direction();
             let Some(vertex) = sample(query, &start, &direction, true)? else { return Ok(Some(Stop::Outside)) };
-            let thin = (self.resolution_along(&direction) + query.margin_along(&direction)) * T::count(4);
+            // Two points of what is flat may be a margin off on either side.
+            let margin = query.margin_along(&direction);
+            let thin = self.resolution_along(&direction) + margin + margin;
             if start.accept(&vertex.point, thin) {
                 if self.add_vertex(vertex).is_none() {
                     return Ok(Some(Stop::Capacity));

@@ -26,6 +26,7 @@ pub mod dd;
 pub mod dice;
 pub mod exact;
 pub mod hull;
+pub mod lattice;
 pub mod memory;
 
 use nalgebra::{Matrix3, Vector3};

@@ -2,7 +2,8 @@
 //!
 //! The default [`error`](Support::error) of a set is a share of its stated extent. Where that bound is true but loose (a bound for a whole family of shapes,
 //! say), so is the error, and with it every margin. 2 N support calls along the axes draw a box around the core; the default error is then the
-//! same share of that box. An error that the set states by itself says something else, and stays.
+//! same share of that box's size, in any direction: what is rounded along a short axis may have been as long as a long one. An error that the set
+//! states by itself says something else, and stays.
 
 use crate::scalar::{Real, TwoWords, Vector, norm};
 use crate::support::{Failure, Support, Symmetry};
@@ -75,8 +76,5 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     }
     fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
         self.set.height_in_two_words(u)
-    }
-    fn errors(&self) -> Vector<T, N> {
-        self.extents * (T::count(16 * N) * T::ROUNDOFF)
     }
 }
