@@ -24,6 +24,7 @@ use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
 mod arcs;
+mod ellipsoids;
 pub(crate) mod half_space;
 
 use arcs::NEARLY_COAXIAL;
