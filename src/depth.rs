@@ -24,6 +24,7 @@ use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
 mod arcs;
+mod ellipsoids;
 mod fine;
 pub(crate) mod half_space;
 

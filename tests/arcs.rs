@@ -381,3 +381,55 @@ fn round_profiles_cost_n_log_n() {
     let r = memory.solver::<f64, 3>().depth_until(&a, &a, &options, Some(&late));
     assert!(r.outcome == Outcome::Interrupted && r.iterations == 100, "{r:?}");
 }
+
+/// Ellipsoids of the same axes about the same centre: two smooth minima that expansion must tile, and the least sum of axes in closed form.
+#[test]
+fn equal_ellipsoids_about_one_centre() {
+    let mut dice = Dice::new(8);
+    let e = at("ellipsoid", &[0.5, 0.7, 0.9]);
+    let seen = converges(&e, &e, &mut dice);
+    assert!(seen.lower <= 1.0 && 1.0 <= seen.upper && seen.upper - seen.lower < 1e-13, "{seen:?}");
+}
+
+#[test]
+fn ellipsoids_about_nearly_one_centre() {
+    let mut dice = Dice::new(9);
+    let mut memory = Memory::new::<f64, 3>(128, 256);
+    let options = Options::<f64, 3>::default();
+    for k in 0..200 {
+        let axes = |dice: &mut Dice| [0; 3].map(|_| dice.decade(-1.0, 0.5));
+        let first = axes(&mut dice);
+        let mut second = if k % 2 == 0 { first } else { axes(&mut dice) };
+        let turn = if k % 3 == 0 {
+            Rotation3::identity()
+        } else {
+            Rotation3::from_euler_angles(dice.range(0.0, 6.25), dice.range(0.0, 6.25), dice.range(0.0, 6.25))
+        };
+        // The same axes in another order, by a quarter turn about the third.
+        let quarter = k % 8 == 5;
+        let sums: [f64; 3] = std::array::from_fn(|i| first[i] + second[i]);
+        if quarter {
+            second.swap(0, 1);
+        }
+        let spun =
+            Rotation3::from_matrix_unchecked(nalgebra::Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0));
+        let turn_b = if quarter { turn * spun } else { turn };
+        let off = if k % 4 < 2 { 0.0 } else { dice.decade(-16.0, -3.0) };
+        let place = dice.direction::<3>().map(|x| x * 3.0);
+        let aside = dice.direction::<3>().map(|x| x * off);
+        let at_b: [f64; 3] = std::array::from_fn(|i| place[i] + aside[i]);
+        let (a, b) = (body("ellipsoid", &first, rows(&turn), place), body("ellipsoid", &second, rows(&turn_b), at_b));
+        let least = sums.iter().fold(f64::MAX, |m, &x| m.min(x));
+        for (a, b) in [(&a, &b), (&b, &a)] {
+            let seen = broken::<f64>(a, b, &mut dice).unwrap_or_else(|text| panic!("{text}\n{a:?}\n{b:?}"));
+            let seen = if off == 0.0 { seen } else { Seen::from(&depth::<f64>(a, b, &mut memory, &options)) };
+            let blur = off + 1e-14;
+            assert!(seen.lower <= least + blur && least - blur <= seen.upper, "{least} {seen:?}\n{a:?}\n{b:?}");
+            if off < 1e-8 {
+                assert!(seen.outcome == Outcome::Converged && seen.vertices == 0, "{seen:?}\n{a:?}\n{b:?}");
+            }
+            let (a, b) = (single(a), single(b));
+            broken::<f32>(&a, &b, &mut dice).unwrap_or_else(|text| panic!("f32: {text}\n{a:?}\n{b:?}"));
+        }
+    }
+}

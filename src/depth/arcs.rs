@@ -23,10 +23,15 @@ pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
 /// More vertices than expansion takes where no minimisers lie on an arc.
 const PATIENCE: usize = 48;
 
-/// For a body of revolution: how depth is found with one. A program that has no such body does not contain it.
+/// For a body of revolution or an ellipsoid: how depth is found with one. A program that has no such body does not contain it.
 #[derive(Clone, Copy)]
 pub struct Turning<T: Real> {
     pub(super) depth: Route<T>,
+    /// Is the set an ellipsoid, with its axes along the coordinates, and none of revolution about the last?
+    pub(super) ellipsoid: bool,
+    /// The function that makes this: C carries it.
+    #[cfg(feature = "capi")]
+    made_by: fn() -> Self,
 }
 
 type Route<T> = fn(
@@ -45,6 +50,23 @@ impl<T: Real> Turning<T> {
             depth: |solver, pair, axis, calls, options, interrupt| {
                 solver.depth_with_arcs(pair, axis, calls, options, interrupt)
             },
+            ellipsoid: false,
+            #[cfg(feature = "capi")]
+            made_by: Self::new,
+        }
+    }
+
+    /// For an ellipsoid without that symmetry.
+    pub(crate) fn ellipsoid() -> Self {
+        Turning {
+            depth: |solver, pair, axis, calls, options, interrupt| match pair.b.shape.turning() {
+                // (The first body's way is taken, if it has one: the second's is taken here.)
+                Some(other) if !other.ellipsoid => (other.depth)(solver, pair, axis, calls, options, interrupt),
+                _ => solver.depth_with_ellipsoid(pair, calls, options, interrupt),
+            },
+            ellipsoid: true,
+            #[cfg(feature = "capi")]
+            made_by: Self::ellipsoid,
         }
     }
 
@@ -52,7 +74,7 @@ impl<T: Real> Turning<T> {
     #[cfg(feature = "capi")]
     pub(crate) fn into_raw(self) -> unsafe extern "C" fn() {
         // SAFETY: function pointers are alike; this one is not called before `from_raw` has turned it back.
-        unsafe { core::mem::transmute::<Route<T>, unsafe extern "C" fn()>(self.depth) }
+        unsafe { core::mem::transmute::<fn() -> Self, unsafe extern "C" fn()>(self.made_by) }
     }
 
     /// Back from there.
@@ -62,7 +84,8 @@ impl<T: Real> Turning<T> {
     #[cfg(feature = "capi")]
     pub(crate) unsafe fn from_raw(raw: unsafe extern "C" fn()) -> Self {
         // SAFETY: the caller's promise.
-        Turning { depth: unsafe { core::mem::transmute::<unsafe extern "C" fn(), Route<T>>(raw) } }
+        let make = unsafe { core::mem::transmute::<unsafe extern "C" fn(), fn() -> Self>(raw) };
+        make()
     }
 }
 

@@ -149,6 +149,7 @@ pub trait Support<T: Real, const N: usize> {
 
     /// For a set whose [`symmetry`](Support::symmetry) is `Axis`: `Some(Turning::new())` has arcs of minimisers around its axis searched for (a corner of
     /// the other body on the axis, a second axis nearby), which else need thousands of facets. Programs without such sets are spared that code.
+    /// A wrapper that changes the set must not forward this.
     fn turning(&self) -> Option<Turning<T>> {
         None
     }

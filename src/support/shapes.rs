@@ -426,7 +426,8 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
         }
     }
     fn turning(&self) -> Option<Turning<T>> {
-        (Support::<T, N>::symmetry(self) == Symmetry::Axis).then(Turning::new)
+        let turns = Support::<T, N>::symmetry(self) == Symmetry::Axis;
+        Some(if turns { Turning::new() } else { Turning::ellipsoid() })
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true

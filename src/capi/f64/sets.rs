@@ -90,8 +90,8 @@ pub struct qdist_body_f64 {
     pub symmetry: u32,
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
-    /// The search for arcs of minimisers around the axis: set by the body functions of cylinders, cones and ellipsoids of
-    /// revolution. NULL for your own sets.
+    /// How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
+    /// for your own sets.
     pub turning: qdist_turning,
     /// NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
     /// capsules, points and hulls put it here. Called with set.user.
