@@ -84,7 +84,7 @@ impl<T: Real> Solver<'_, T, 3> {
         options: &Options<T, 3>,
     ) -> Option<Answer<T, 3>> {
         let ball = Ball::unit();
-        let (mut query, checked) = pair.query(&ball, calls, options, None);
+        let (mut query, checked) = Pair::query(pair, &ball, calls, options, None);
         checked.and_then(|()| query.normalize()).ok()?;
         self.polytope.reset();
         let mut lowest = None;
