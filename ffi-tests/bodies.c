@@ -359,6 +359,40 @@ static void Q(joins_in_plane)(void) {
     Q(expect)(&depth, 0.5, __LINE__);
 }
 
+/* Two ellipsoids of the same axes, one measured from a point that is not its center: the same point of the world as the other's center. */
+static void Q(ellipsoids_from_elsewhere)(void) {
+    const Q(qdist_ellipsoid) shape = {{1, 2, 3}};
+    Q(body) a, b;
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_body_ellipsoid)(&a, &shape) == QDIST_OK && Q(qdist_body_ellipsoid)(&b, &shape) == QDIST_OK);
+    b.translation[0] = -0.25f;
+    b.center[0] = 0.25f;
+    b.spread = 3.25f;
+    CHECK(Q(qdist_depth3)(Q(solver3), &a, &b, NULL, &depth) == QDIST_OK);
+    CHECK(depth.lower <= 1.75 && 1.75 <= depth.upper);
+}
+
+/* Turned boxes that overlap by a thousand roundoffs of their size. */
+static void Q(shallow)(void) {
+    const Q(qdist_box) shape = {{1, 1, 1}};
+    const double c = 0.8, s = 0.6;
+    Q(body) a, b;
+    Q(depth) depth;
+    memset(&depth, 0, sizeof depth);
+    depth.struct_size = sizeof depth;
+    CHECK(Q(qdist_body_box)(&a, &shape) == QDIST_OK && Q(qdist_body_box)(&b, &shape) == QDIST_OK);
+    b.rotation[0] = (REAL)c;
+    b.rotation[1] = (REAL)-s;
+    b.rotation[3] = (REAL)s;
+    b.rotation[4] = (REAL)c;
+    b.translation[0] = (REAL)2.399;
+    b.translation[1] = (REAL)0.2;
+    CHECK(a.height != NULL && Q(qdist_depth3)(Q(solver3), &a, &b, NULL, &depth) == QDIST_OK);
+    CHECK(depth.outcome == QDIST_CONVERGED && depth.lower > 9.99e-4 && depth.upper < 1.001e-3);
+}
+
 static void JOIN(bodies, SUFFIX)(void) {
     CHECK(Q(qdist_solver_init2)(Q(memory2), sizeof Q(memory2), 32, 32, &Q(solver2)) == QDIST_OK);
     CHECK(Q(qdist_solver_init3)(Q(memory3), sizeof Q(memory3), 128, 256, &Q(solver3)) == QDIST_OK);
@@ -369,6 +403,8 @@ static void JOIN(bodies, SUFFIX)(void) {
     Q(joins)();
     Q(joins_in_plane)();
     Q(joined_sets)();
+    Q(ellipsoids_from_elsewhere)();
+    Q(shallow)();
 }
 
 #endif

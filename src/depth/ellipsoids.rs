@@ -33,7 +33,8 @@ const NEARLY_PARALLEL: f64 = 0.0625;
 
 impl<T: Real> Body<'_, T> {
     fn is_ellipsoid(&self) -> bool {
-        self.shape.turning().is_some_and(|turning| turning.ellipsoid)
+        // (What is measured from another point than its center has its offset from there.)
+        self.shape.turning().is_some_and(|turning| turning.ellipsoid) && self.shape.center().is_none()
     }
 }
 

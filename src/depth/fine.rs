@@ -31,7 +31,7 @@
 //! origin is a combination of at most N vertices. Let x' be the same combination of the points behind them, and p the part of it across n:
 //!
 //! ```text
-//! d >= r - |x'|,     |x'| <= |n.x'| / |n| + p^2 / (2 |n.x'|)     -n.x' <= max of -n.v'
+//! d >= r - |x'|,     |x'| <= |n.x'| / |n| + p^2 |n| / (2 |n.x'|)     -n.x' <= max of -n.v'
 //! ```
 //!
 //! x' is added up in two words: p is then as small as the weights are good, and squared. The upper bound is the one above; to tilt n along the vertices costs a roundoff of their size, but
@@ -45,12 +45,12 @@
 
 use core::cell::RefCell;
 
-use super::{Body, Pair};
+use super::{Anchor, Body, Pair, turned};
 use crate::answer::{Answer, Plan};
 use crate::bounds::Bracket;
 use crate::polytope::{Facet, Polytope};
 use crate::query::Query;
-use crate::scalar::{Accumulator, Real, TwoWords, Vector, norm};
+use crate::scalar::{Accumulator, Real, TwoWords, Vector, norm, unit};
 use crate::simplex::{Edges, MAX_CORNERS, Simplex};
 use crate::support::{Failure, Support};
 use heapless::Vec;
@@ -80,10 +80,16 @@ struct Call<T: Real, const N: usize> {
 impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
     /// `None` for bodies whose points are not exact.
     pub fn new(pair: &'p Pair<'b, 'a, T, N>) -> Option<Self> {
-        let zero = TwoWords::from(Vector::zeros());
-        let exact =
-            |body: &Body<'_, T, N>| body.inflation == T::zero() && body.shape.height_in_two_words(&zero).is_some();
-        (exact(pair.a) && exact(pair.b)).then(|| Recorder { pair, calls: RefCell::new(Vec::new()) })
+        let mut axis = Vector::zeros();
+        axis[0] = T::one();
+        let axis = TwoWords::from(axis);
+        // (Errors are told by what a shape says of its extents.)
+        let exact = |body: &Body<'_, T, N>, anchor: &Anchor<T, N>| {
+            let stated = body.shape.extent() > T::zero() || anchor.extent == T::zero();
+            stated && body.inflation == T::zero() && body.shape.height_in_two_words(&axis).is_some()
+        };
+        (exact(pair.a, &pair.on_a) && exact(pair.b, &pair.on_b))
+            .then(|| Recorder { pair, calls: RefCell::new(Vec::new()) })
     }
 
     fn sample(&self, direction: &Vector<T, N>, exhaustive: bool) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
@@ -105,7 +111,14 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
             let exhaustive = || body.shape.exhaustive(&local).map(|(point, _)| point);
             if call.exhaustive { exhaustive() } else { body.shape.support(&local) }.ok()
         };
-        Some([ask(self.pair.a, &call.direction)?, ask(self.pair.b, &-call.direction)?])
+        let ends = [ask(self.pair.a, &call.direction)?, ask(self.pair.b, &-call.direction)?];
+        // Of points that are equally far any one may come: are these the same?
+        let image = |body: &Body<'_, T, N>, anchor: &Anchor<T, N>, point: Vector<T, N>| {
+            turned(&body.rotation, &anchor.center.map_or(point, |center| point - center))
+        };
+        let [a, b] = ends;
+        let (on_a, on_b) = (image(self.pair.a, &self.pair.on_a, a), image(self.pair.b, &self.pair.on_b, b));
+        (on_a - on_b + self.pair.offset == *vertex).then_some(ends)
     }
 }
 
@@ -162,12 +175,13 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Level<'p, 'b, 'a, T, N> {
         for i in 0..N {
             squared.add_product(n.high[i], n.high[i]);
             squared.add_product(n.high[i], n.low[i] + n.low[i]);
+            squared.add_product(n.low[i], n.low[i]);
             for word in [n.high[i], n.low[i]] {
                 apart.add_product(word, pair.a.translation[i]);
                 apart.add_product(word, -pair.b.translation[i]);
             }
         }
-        let squared = squared.value() + n.low.dot(&n.low);
+        let squared = squared.value();
         let length = (T::one() + squared).root();
         let excess = squared / ((T::one() + length) * length);
         let seen = [pair.a, pair.b].map(|body| n.turned_back(&body.rotation));
@@ -182,7 +196,7 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Level<'p, 'b, 'a, T, N> {
         height.add(self.pair.a.ball);
         height.add(self.pair.b.ball);
         let distance = height.value();
-        (distance, self.error + (shrink.abs() + distance.abs()) * (T::count(8) * T::ROUNDOFF))
+        (distance, self.error + (shrink.abs() + distance.abs()) * (T::count(16) * T::ROUNDOFF))
     }
 
     /// n.v' of the point behind a vertex.
@@ -254,10 +268,11 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
 
     /// For cores that are apart: see "Cores that are apart".
     fn by_nearest(&self, before: &Bracket<T>, answer: &Answer<T, N>) -> Option<(Bracket<T>, Option<Vector<T, N>>)> {
-        let (n, scale) = (answer.direction, self.query.scale());
+        let scale = self.query.scale();
         let points = self.ends(&answer.witness)?;
-        let level = self.level(&n, &answer.witness, &points)?;
+        let level = self.level(&answer.direction, &answer.witness, &points)?;
         let nearest = self.combination(&answer.witness, &points);
+        let n = level.n.high + level.n.low; // What x' is measured along is what the heights are.
         let distance = -n.dot(&nearest);
         let blur = self.error * T::count(4) + norm(&nearest) * (T::count(16) * T::ROUNDOFF);
         let aside = norm(&(nearest + n * distance)) * T::of(1.01) + blur;
@@ -279,7 +294,9 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
         let mut start = self.widest(before.upper)?;
         for _ in 0..ATTEMPTS {
             let corners = self.corners(start);
-            let level = self.level(&start.normal, &corners, &self.ends(&corners)?)?;
+            let Some(level) = self.ends(&corners).and_then(|ends| self.level(&start.normal, &corners, &ends)) else {
+                break;
+            };
             let (normal, upper) = self.upper(&level)?;
             if upper < best.0.upper {
                 best = (Bracket { upper, ..best.0 }, Some(normal));
@@ -297,7 +314,7 @@ impl<'f, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'p, 'b, 'a, T, N> {
     /// The upper bound that is proved by the normal as it will be reported, in one word.
     #[inline(never)]
     fn upper(&self, level: &Level<'p, 'b, 'a, T, N>) -> Option<(Vector<T, N>, T)> {
-        let normal = level.n.high + level.n.low;
+        let normal = unit(&(level.n.high + level.n.low));
         let upper = Level::new(self.recorder.pair, TwoWords::from(normal), self.error).upper()?;
         Some((normal, upper * self.query.scale()))
     }

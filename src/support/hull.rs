@@ -63,9 +63,9 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
         let blur = size * T::count(N) * norm(&u.high) * (T::count(4 * N + 8) * T::ROUNDOFF);
         let least = self.height::<false>(&u.high, self.scan::<false>(&u.high)) - blur;
         let high = self.points.iter().filter(|p| self.height::<false>(&u.high, p) >= least);
-        let sums = high.map(|p| u.dot(&Vector::from(*p)));
-        let most = sums.reduce(|most, sum| if sum.minus(&most) > T::zero() { sum } else { most });
-        Some(most?.parts().into())
+        let sums = high.map(|p| u.dot(&Vector::from(*p)).parts());
+        let most = sums.reduce(|most, sum| if sum > most { sum } else { most })?;
+        Some(most.into())
     }
 
     /// The best of the listed vertices, the first one of equals.
