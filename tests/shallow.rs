@@ -188,7 +188,7 @@ fn the_end_of_a_short_side() {
     let (thin, disc) = (BoxShape::new(half).unwrap(), Sphere::new(1.0f32).unwrap());
     let wide = (BoxShape::new(half.map(f64::from)).unwrap(), Sphere::new(1.0f64).unwrap());
     for number in 0..4000 {
-        let angle = rng.range(0.0, 6.28);
+        let angle = rng.range(0.0, 6.0);
         let turn = Rotation2::new(angle).matrix().map(|x| x as f32);
         let local = Vector2::new(0.5 + 0.999, 1.5e-4 + rng.range(0.0, 1.2e-4));
         let at = (Rotation2::new(angle) * local).map(|x| x as f32);
