@@ -720,9 +720,9 @@ static void names(void) {
     for (outcome = QDIST_MESH_CONVERGED; outcome <= QDIST_MESH_INVALID; ++outcome)
         CHECK(strcmp(qdist_mesh_outcome_string(outcome), "unknown outcome") != 0);
     CHECK(strcmp(qdist_mesh_outcome_string(QDIST_MESH_INVALID + 1), "unknown outcome") == 0);
-    for (status = QDIST_ERROR_MESH_EMPTY; status <= QDIST_ERROR_INTERRUPTED; ++status)
+    for (status = QDIST_ERROR_MESH_EMPTY; status <= QDIST_ERROR_HULL_POINTS; ++status)
         CHECK(strcmp(qdist_status_string(status), "unknown status") != 0);
-    CHECK(strcmp(qdist_status_string(QDIST_ERROR_INTERRUPTED + 1), "unknown status") == 0);
+    CHECK(strcmp(qdist_status_string(QDIST_ERROR_HULL_POINTS + 1), "unknown status") == 0);
 }
 
 int main(void) {
