@@ -188,7 +188,7 @@ static void at_most(const char *what, long bytes, double kilobytes) {
 int main(void) {
     const long base = used(nothing);
     puts("stack of a query:");
-    at_most("depth of boxes, float", used(boxes_f32) - base, 6);
+    at_most("depth of boxes, float", used(boxes_f32) - base, 9);
     at_most("depth of boxes", used(boxes_f64) - base, 10);
     at_most("d_Q in 6-D, by cones", used(cones) - base, 25);
     at_most("d_Q in 6-D, by rays", used(rays) - base, 25);

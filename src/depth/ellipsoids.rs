@@ -24,7 +24,7 @@ use crate::answer::Answer;
 use crate::bounds::Bracket;
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::scalar::{Real, norm, unit};
+use crate::scalar::{Real, Vector, norm, unit};
 use crate::simplex::Simplex;
 use crate::solver::Solver;
 
@@ -89,8 +89,8 @@ impl<T: Real> Solver<'_, T, 3> {
         checked.and_then(|()| query.normalize()).ok()?;
         self.polytope.reset();
         let mut lowest = None;
-        for axis in pair.a.rotation.column_iter() {
-            let axis = unit(&axis.into_owned());
+        for column in pair.a.rotation.data.0 {
+            let axis = unit(&Vector::from(column));
             let axis = if axis.dot(&pair.offset) > T::zero() { -axis } else { axis };
             let (vertex, height) = query.support(&axis).ok()?;
             lowest = lowest.filter(|&(_, lowest)| lowest <= height).or(Some((vertex, height)));

@@ -45,7 +45,7 @@
 
 use core::cell::RefCell;
 
-use super::{Anchor, Body, Pair, turned};
+use super::{Anchor, Body, Pair};
 use crate::answer::{Answer, Plan};
 use crate::bounds::Bracket;
 use crate::polytope::{Facet, Polytope};
@@ -80,9 +80,7 @@ struct Call<T: Real, const N: usize> {
 impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
     /// `None` for bodies whose points are not exact.
     pub fn new(pair: &'p Pair<'b, 'a, T, N>) -> Option<Self> {
-        let mut axis = Vector::zeros();
-        axis[0] = T::one();
-        let axis = TwoWords::from(axis);
+        let axis = TwoWords::from(Vector::repeat(T::one()));
         // (Errors are told by what a shape says of its extents.)
         let exact = |body: &Body<'_, T, N>, anchor: &Anchor<T, N>| {
             let stated = body.shape.extent() > T::zero() || anchor.extent == T::zero();
@@ -114,11 +112,14 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
         let ends = [ask(self.pair.a, &call.direction)?, ask(self.pair.b, &-call.direction)?];
         // Of points that are equally far any one may come: are these the same?
         let image = |body: &Body<'_, T, N>, anchor: &Anchor<T, N>, point: Vector<T, N>| {
-            turned(&body.rotation, &anchor.center.map_or(point, |center| point - center))
+            let point = anchor.center.map_or(point, |center| point - center);
+            // As `turned` has it; by columns, so that no index can fail.
+            let terms = body.rotation.data.0.iter().zip(point.iter());
+            terms.map(|(column, &x)| Vector::from(*column) * x).reduce(|sum, term| sum + term)
         };
         let [a, b] = ends;
         let (on_a, on_b) = (image(self.pair.a, &self.pair.on_a, a), image(self.pair.b, &self.pair.on_b, b));
-        (on_a - on_b + self.pair.offset == *vertex).then_some(ends)
+        (on_a? - on_b? + self.pair.offset == *vertex).then_some(ends)
     }
 }
 
