@@ -276,7 +276,7 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
 #define QDIST_PLAN_DISTANCE 1
 
-// Polytopal Q: one ray per vertex of Q, no polytope, and no memory of the solver.
+// Polytopal Q: one ray per vertex of Q, and no polytope.
 #define QDIST_PLAN_RAYS 2
 
 // The polytope outgrew the memory: expansion cone by cone in the same memory.
@@ -786,7 +786,7 @@ typedef struct {
     // Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
     qdist_gauge_point_f64 point;
     // With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
-    // a ray at each (QDIST_PLAN_RAYS).
+    // a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
     qdist_gauge_vertex_f64 vertex;
     // Which mirror images of Q are Q itself.
     qdist_mirrored mirrored;

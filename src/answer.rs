@@ -115,8 +115,9 @@ impl<T: Real, const N: usize> Answer<T, N> {
         // What is flat stays so, unless d is certainly another.
         let flat = first.outcome == Outcome::Degenerate && self.lower <= T::zero() && self.upper >= T::zero();
         let narrower = self.upper - self.lower <= first.upper - first.lower;
+        let (vertices, facets) = (self.vertices.max(first.vertices), self.facets.max(first.facets));
         let better = if narrower && !flat { self } else { first.clone() };
-        Answer { support_calls, iterations, ..better }
+        Answer { support_calls, iterations, vertices, facets, ..better }
     }
 
     /// The largest norm of a point of A in the answer.
@@ -161,12 +162,16 @@ pub(crate) enum Stop {
     /// The origin is certainly outside.
     Outside,
     Rounding,
+    /// A height of A is 0, up to rounding: so is d.
+    Zero,
     Above,
     Below,
     Capacity,
     Iterations,
     Interrupted,
     Flat,
+    /// It is another plan's turn: the end of no query.
+    Turn,
     Failed(i32),
 }
 
@@ -180,9 +185,9 @@ impl Stop {
             Stop::Below => Outcome::Below,
             _ if upper < zero => Outcome::Separated,
             Stop::Flat if lower <= zero => Outcome::Degenerate,
-            Stop::Met | Stop::Rounding if at_zero => Outcome::Touching,
+            Stop::Met | Stop::Rounding | Stop::Zero if at_zero => Outcome::Touching,
             _ if met && lower > zero => Outcome::Converged,
-            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Flat => Outcome::Precision,
+            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Zero | Stop::Flat | Stop::Turn => Outcome::Precision,
             Stop::Capacity => Outcome::Capacity,
             Stop::Iterations => Outcome::Iterations,
             Stop::Interrupted => Outcome::Interrupted,

@@ -138,6 +138,9 @@ impl<T: Real, const N: usize> Support<T, N> for Inflated<'_, T, N> {
     fn mirrored(&self, signs: u8) -> bool {
         self.0.mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        self.0.contains_origin()
+    }
     fn error(&self) -> T {
         total(self.0.error(), T::count(8 + N) * T::ROUNDOFF * self.0.radius())
     }

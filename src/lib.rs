@@ -36,9 +36,9 @@
 //! say, or when the caller's limit is reached; the bracket is true at every moment, so any end is a good end.
 //!
 //! In six dimensions a polytope outgrows any memory. Then the same expansion goes over all directions cone by cone (`plan::conewise`), in the same
-//! memory, whatever its size. A polytopal Q needs neither: one ray per vertex is a convex problem (`plan::rays`). From tick to tick of a
-//! control loop the bracket moves along with the set ([`tracker`]). Meshes, which are not convex, have a search of their own, and a tracker of
-//! their own (`mesh::depth`).
+//! memory, whatever its size. A polytopal Q needs neither: one ray per vertex is a convex problem (`plan::rays`); where a polytope may be
+//! cheaper, the two take turns (`plan::race`). From tick to tick of a control loop the bracket moves along with the set ([`tracker`]). Meshes, which are not
+//! convex, have a search of their own, and a tracker of their own (`mesh::depth`).
 //!
 //! Three things keep it exact and fast:
 //!
@@ -64,7 +64,7 @@
 //!   sectors                     arcs of directions around the axis of a body of revolution
 //!   meridian                    two bodies on one axis
 //!    solver                     which plan, and the answer
-//!     plan                      rays, expansion (Algorithm 1), conewise expansion
+//!     plan                      rays, their race with expansion, expansion (Algorithm 1), conewise expansion
 //!      query                    one query's state: best upper bound, bracket, answer
 //!       polytope  distance      facets, adjacency, queue; nearest point
 //!        start  simplex  bounds  answer   first and small simplices; what certifies the bracket; outcomes

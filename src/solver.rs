@@ -4,7 +4,8 @@ use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
 use crate::distance::{Cloud, Inflated, Nearest, nearest};
 use crate::plan::expansion::Expanded;
-use crate::plan::rays::solve_rays;
+use crate::plan::race::{Ended, by_rays, race};
+use crate::plan::rays::Crossings;
 use crate::polytope::Polytope;
 use crate::qset::Gauge;
 use crate::query::{Options, Query};
@@ -22,20 +23,35 @@ pub struct Solver<'w, T, const N: usize> {
 
 /// What is known when the plans that any query begins with have had their say.
 struct Opening<T, const N: usize> {
-    /// The expansion's end; or, with no expansion, that of the distance iteration, which decided.
-    expanded: Result<Expanded<T>, Stop>,
+    end: End<T, N>,
     /// The point of A nearest to the origin, where A has a ball term.
     near: Option<Nearest<T, N>>,
+}
+
+/// Which plan came to an end.
+enum End<T, const N: usize> {
+    /// Expansion.
+    Expanded(Expanded<T>),
+    /// The distance iteration, which decided.
+    Near(Stop),
+    /// Rays, which decided.
+    Crossed(Crossings<T, N>),
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The generalized penetration distance d_Q(A) = max { λ : λQ ⊂ A } of the origin in A.
     ///
     /// The plan is chosen by what the query is, and told in [`Answer::plan`]:
-    /// * a polytopal Q takes one ray per vertex of Q, and no memory of the workspace;
-    /// * otherwise a polytope is expanded, best first (Algorithm 1);
+    /// * a polytope is expanded, best first (Algorithm 1);
+    /// * a polytopal Q may take one ray per vertex of Q instead, and no memory: expansion begins, and where it takes as long as the rays are
+    ///   expected to, the two take turns;
     /// * when it outgrows the memory, d is searched cone by cone in the same memory. That converges, given the iterations, with any
     ///   capacity of at least 4 N facets and 3 N vertices; with N = 6, 512 facets and 64 vertices are a sensible least.
+    ///
+    /// Where a height of A is 0 up to rounding, as for a grasp that is open, d is 0 and the query is over: `lower` is 0 where the set
+    /// [contains the origin](Support::contains_origin) by definition, else what its nearest point shows. A [`Segment`](crate::qset::Segment) asks for its own
+    /// direction only, and may have d > 0 there; how much of one that runs along the boundary of A is in A is not for arithmetic to tell: 0 <= d <=
+    /// `upper`. ([`solve_in_span`](Self::solve_in_span) for sets that are flat.)
     ///
     /// With a Euclidean Q, A's ball term is taken out exactly, and a negative answer is minus the distance.
     ///
@@ -89,22 +105,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// The plan for a query that has been made ready.
     fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
-        let rays = match solve_rays(query) {
-            Ok(rays) => rays,
-            Err(failure) => return self.give_up(query, failure),
-        };
-        if let Some(rays) = rays {
-            query.plan = Plan::Rays;
-            match rays.stop {
-                // Where rounding cost the rays too much, expansion loses less; where they were cut short, its start may know more.
-                Stop::Rounding => query.plan = Plan::Expansion,
-                Stop::Iterations | Stop::Interrupted => {}
-                stop => return query.answer(stop, rays.lower, rays.witness),
-            }
-            query.raise(rays.lower);
-        }
-        match self.open(query) {
-            Ok(Opening { expanded: Ok(expanded), near }) if expanded.stop == Stop::Capacity => {
+        match self.open(query, choose) {
+            Ok(Opening { end: End::Expanded(expanded), near }) if expanded.stop == Stop::Capacity => {
                 self.solve_cones(query, expanded, near)
             }
             Ok(opening) => self.close(query, opening),
@@ -150,7 +152,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     #[inline(always)]
     pub(crate) fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
-        match self.open(query) {
+        match self.open(query, expand) {
             Ok(opening) => self.close(query, opening),
             Err(failure) => self.give_up(query, failure),
         }
@@ -158,17 +160,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// The answer after the opening.
     fn close(&mut self, query: &mut Query<'_, T, N>, opening: Opening<T, N>) -> Answer<T, N> {
-        match (opening.expanded, opening.near) {
-            (Ok(expanded), near) => self.conclude(query, expanded, near),
-            (Err(stop), near) => {
+        match (opening.end, opening.near) {
+            (End::Expanded(expanded), near) => self.conclude(query, expanded, near),
+            (End::Near(stop), near) => {
                 query.plan = Plan::Distance;
                 self.lower_by_vertices(query, stop, near)
             }
+            (End::Crossed(rays), _) => self.report(query, rays.stop, rays.lower, rays.witness),
         }
     }
 
-    /// Distance where that decides, else expansion.
-    fn open(&mut self, query: &mut Query<'_, T, N>) -> Result<Opening<T, N>, Failure> {
+    /// Distance where that decides; else the first simplex, and the plan that it is for.
+    fn open(
+        &mut self,
+        query: &mut Query<'_, T, N>,
+        plan: impl FnOnce(&mut Polytope<'_, T, N>, &mut Query<'_, T, N>, Option<Stop>) -> Result<End<T, N>, Failure>,
+    ) -> Result<Opening<T, N>, Failure> {
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
         let mut floor = None;
@@ -177,15 +184,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let bracket =
                 Bracket { lower: query.lower_from_simplex(&near.simplex, near.distance), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
-                return Ok(Opening { expanded: Err(stop), near: Some(near) });
+                return Ok(Opening { end: End::Near(stop), near: Some(near) });
             }
             floor = Some(near);
         }
-        let expanded = match self.polytope.start(query, &first)? {
-            None => self.polytope.expand(query)?,
-            Some(stop) => Expanded { stop, key: -T::HUGE, facet: None },
-        };
-        Ok(Opening { expanded: Ok(expanded), near: floor })
+        let stop = self.polytope.start(query, &first)?;
+        let end = plan(&mut self.polytope, query, stop)?;
+        Ok(Opening { end, near: floor })
     }
 
     /// Cone by cone, after the polytope has outgrown the memory.
@@ -259,11 +264,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
-        if !apart && self.polytope.facets().next().is_some() {
+        if !apart && stop != Stop::Zero && self.polytope.facets().next().is_some() {
             if let Err(failure) = self.polytope.widen(query, stop, key) {
                 return self.give_up(query, failure);
             }
-            if let Err(failure) = self.meet_rival(query) {
+            // (After a limit nothing is asked that would not be asked after a later one.)
+            if query.stopped().is_none()
+                && let Err(failure) = self.meet_rival(query)
+            {
                 return self.give_up(query, failure);
             }
             if let Some(lower) = self.polytope.lower(query, key) {
@@ -272,8 +280,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 return self.report(query, stop, lower, witness);
             }
         }
-        // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end.
-        if query.bounds.radius == T::zero() && !matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted) {
+        // The origin is outside, on the boundary, or in a flat set: the nearest point of A is the other end, unless that is the origin.
+        let is_known = !apart && matches!(stop, Stop::Zero | Stop::Flat) && query.contains_origin();
+        let is_cut_short = matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted);
+        if query.bounds.radius == T::zero() && !is_known && !is_cut_short {
             let first = if apart { query.direction } else { query.first_direction() };
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
@@ -331,4 +341,42 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
         self.lower_by_vertices(query, Stop::Failed(failure.0), None)
     }
+}
+
+/// Expansion, and nothing else; unless the first simplex is none for this reason.
+fn expand<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    stop: Option<Stop>,
+) -> Result<End<T, N>, Failure> {
+    match stop {
+        None => polytope.expand(query).map(End::Expanded),
+        Some(stop) => Ok(End::Expanded(Expanded { stop, key: -T::HUGE, facet: None })),
+    }
+}
+
+/// Expansion; and rays by turns with it where Q is a polytope. Where A is flat, a Q that asks for some directions only is left to the rays.
+fn choose<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    stop: Option<Stop>,
+) -> Result<End<T, N>, Failure> {
+    if query.rays() == 0 {
+        return expand(polytope, query, stop);
+    }
+    match stop {
+        None => {
+            return Ok(match race(polytope, query)? {
+                Ended::Rays(rays) => End::Crossed(rays),
+                Ended::Expansion(expanded) => End::Expanded(expanded),
+            });
+        }
+        Some(Stop::Flat) if !(query.inner_radius() > T::zero()) => {
+            if let Some(rays) = by_rays(query)? {
+                return Ok(End::Crossed(rays));
+            }
+        }
+        Some(_) => {}
+    }
+    expand(polytope, query, stop)
 }

@@ -65,6 +65,9 @@ impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn S
     fn mirrored(&self, signs: u8) -> bool {
         self.signs(signs).is_some_and(|signs| self.inner.mirrored(signs))
     }
+    fn contains_origin(&self) -> bool {
+        self.inner.contains_origin()
+    }
     fn error(&self) -> T {
         total(self.inner.error(), self.blur)
     }

@@ -180,12 +180,19 @@ fn choice<T: Real, const N: usize>() {
         (&Vertices::new(&corners).unwrap(), 1.0),
     ];
     for (q, d) in polytopal {
-        let answer = solve("cube", &cube, q, &o, large, d);
+        // The cheaper one of two; and where expansion has no memory, rays need none.
+        for size in [large, (N + 1, 2 * N)] {
+            let answer = solve("cube", &cube, q, &o, size, d);
+            assert!(matches!(answer.plan, Plan::Rays | Plan::Expansion), "{:?}", answer.plan);
+            assert_eq!(answer.outcome, Outcome::Converged);
+        }
+    }
+    let cubic = BoxGauge::new(ones).unwrap();
+    assert_eq!(solve("cube", &cube, &cubic, &o, (N + 1, 2 * N), 1.0).plan, Plan::Rays);
+    if N == 6 {
+        // Round sets take thousands of facets there.
+        let answer = solve("ball", &Round::aligned([1.0; N]), &cubic, &options(1e-4, 0), large, 6f64.sqrt().recip());
         assert_eq!((answer.plan, answer.outcome), (Plan::Rays, Outcome::Converged));
-        // No memory of the workspace is needed.
-        assert_eq!((answer.vertices, answer.facets), (0, 0));
-        let small = solve("cube", &cube, q, &o, (N + 1, 2 * N), d);
-        assert_eq!((small.lower, small.upper, small.plan), (answer.lower, answer.upper, Plan::Rays));
     }
     let stretched = EllipsoidGauge::new(vector::<T, N>([0.5; N]), SMatrix::identity()).unwrap();
     let unknown =
@@ -582,6 +589,7 @@ fn with_gauge<T: Real, const N: usize, R>(
 
 fn rays<T: Real, const N: usize>() {
     let mut dice = Dice::new(56);
+    let mut by_rays = [0; 2];
     for round in 0..150 {
         let body = match round % 4 {
             0 => Body::Box(std::array::from_fn(|_| exact::<T>(dice.range(0.5, 2.0)))),
@@ -600,21 +608,24 @@ fn rays<T: Real, const N: usize>() {
             let o = Options { relative: T::RELATIVE_TOLERANCE, ..Options::default() };
             let tell = format!("{name} in body {}, round {round}, scale {scale:e}, unit {unit:e}", round % 4);
             with_body::<T, N, _>(&body, &m, &at, |set| {
-                let size = (64, 512);
-                let mut memory = Memory::new::<T, N>(size.0, size.1);
-                let answer = memory.solver::<T, N>().solve(set, q, &o);
-                let seen = Seen::from(&answer);
                 let blur = 1e-13 * d;
-                assert_eq!(broken_promise(&seen, &o, size.0, size.1), None, "{tell} {seen:?}");
-                assert!(seen.lower <= d + blur && d - blur <= seen.upper, "{tell}: d = {d:e} {seen:?}");
-                // Rounding: a flat Q asks A itself for a margin, and in f32 expansion may have the better one.
-                let fine = T::ROUNDOFF.to_f64() < 1e-10;
-                if fine {
-                    assert_eq!(answer.plan, Plan::Rays, "{tell} {seen:?}");
-                    assert_eq!(answer.outcome, Outcome::Converged, "{tell} d = {d:e} {seen:?}");
-                } else {
-                    assert!(seen.upper - seen.lower <= 3e-3 * d, "{tell} d = {d:e} {seen:?}");
+                // In the least memory there are only rays.
+                for size in [(N + 1, 2 * N), (64, 512)] {
+                    let mut memory = Memory::new::<T, N>(size.0, size.1);
+                    let answer = memory.solver::<T, N>().solve(set, q, &o);
+                    let seen = Seen::from(&answer);
+                    by_rays[usize::from(size.0 == 64)] += usize::from(answer.plan == Plan::Rays);
+                    assert_eq!(broken_promise(&seen, &o, size.0, size.1), None, "{tell} {seen:?}");
+                    assert!(seen.lower <= d + blur && d - blur <= seen.upper, "{tell}: d = {d:e} {seen:?}");
+                    // Rounding: a flat Q asks A itself for a margin, and in f32 expansion may have the better one.
+                    let fine = T::ROUNDOFF.to_f64() < 1e-10;
+                    if fine {
+                        assert_eq!(answer.outcome, Outcome::Converged, "{tell} d = {d:e} {seen:?}");
+                    } else if size.0 == 64 {
+                        assert!(seen.upper - seen.lower <= 3e-3 * d, "{tell} d = {d:e} {seen:?}");
+                    }
                 }
+                let mut memory = Memory::new::<T, N>(64, 512);
                 let o = options::<T, N>(1e-3, 200);
                 let expanded = memory.solver::<T, N>().solve_by_expansion(set, q, &o);
                 let other = Seen::from(&expanded);
@@ -623,6 +634,9 @@ fn rays<T: Real, const N: usize>() {
             });
         });
     }
+    // (In f32 what rays lose to rounding is often left to expansion.)
+    let fine = T::ROUNDOFF.to_f64() < 1e-10;
+    assert!(!fine || by_rays[0] >= 60 && by_rays[1] < 150, "{by_rays:?}");
 }
 every_type_and_dimension!(rays_against_closed_forms, rays);
 
@@ -707,7 +721,8 @@ fn agreement<const N: usize>() {
         let set = Points::new(&points).unwrap();
         with_gauge::<f64, N, _>(round % 9, &mut dice, 1.0, |q, _, name| {
             let o = options::<f64, N>(1e-6, 0);
-            let by_rays = memory.solver::<f64, N>().solve(&set, q, &o);
+            // In the least memory there are only rays, but where the first simplex is enough.
+            let by_rays = Memory::new::<f64, N>(N + 1, 2 * N).solver::<f64, N>().solve(&set, q, &o);
             let silent = GaugeFn::new(|u: &Vector<f64, N>| q.value(u), q.error()).unwrap();
             let few = options::<f64, N>(1e-6, 600);
             let expanded = memory.solver::<f64, N>().solve(&set, &silent, &few);
@@ -718,8 +733,8 @@ fn agreement<const N: usize>() {
             }
             assert!(a.lower <= b.upper && b.lower <= a.upper, "{tell}");
             if a.upper > 1e-3 {
-                assert_eq!((by_rays.plan, a.outcome), (Plan::Rays, Outcome::Converged), "{tell}");
-                closed += 1;
+                assert_eq!(a.outcome, Outcome::Converged, "{tell}");
+                closed += usize::from(by_rays.plan == Plan::Rays);
             }
         });
     }

@@ -125,7 +125,7 @@ pub type qdist_plan = i32;
 pub const QDIST_PLAN_EXPANSION: qdist_plan = 0;
 /// By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
 pub const QDIST_PLAN_DISTANCE: qdist_plan = 1;
-/// Polytopal Q: one ray per vertex of Q, no polytope, and no memory of the solver.
+/// Polytopal Q: one ray per vertex of Q, and no polytope.
 pub const QDIST_PLAN_RAYS: qdist_plan = 2;
 /// The polytope outgrew the memory: expansion cone by cone in the same memory.
 pub const QDIST_PLAN_CONES: qdist_plan = 3;

@@ -209,6 +209,9 @@ impl<T: Real> Support<T, 6> for Even<'_, T> {
     fn mirrored(&self, signs: u8) -> bool {
         self.set.mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        self.set.contains_origin()
+    }
     fn extent(&self) -> T {
         norm(&self.extents) * (T::one() + T::count(16) * T::ROUNDOFF)
     }

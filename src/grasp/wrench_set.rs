@@ -194,6 +194,9 @@ impl<T: Real, C: Contribution<T>> Support<T, 6> for WrenchSet<'_, T, C> {
     fn mirrored(&self, signs: u8) -> bool {
         self.is_mirrored(&Vector::from_fn(|i, _| if signs >> i & 1 == 1 { -T::one() } else { T::one() }))
     }
+    fn contains_origin(&self) -> bool {
+        true // {0} is in it.
+    }
     fn extent(&self) -> T {
         self.extent
     }

@@ -24,6 +24,12 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Lines 5 to 9 of Algorithm 1.
     pub(crate) fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
         loop {
+            if query.is_spent() && self.confirm(query)? {
+                return Ok(Expanded { stop: Stop::Zero, key: -T::HUGE, facet: None });
+            }
+            if query.work.is_over() {
+                return Ok(Expanded { stop: Stop::Turn, key: -T::HUGE, facet: None });
+            }
             let Some((key, index)) = self.pop_lowest() else {
                 // No facet below the best upper bound is left.
                 if !self.confirm(query)? {
@@ -50,6 +56,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                     continue;
                 }
                 return end(Stop::Outside);
+            }
+            if query.is_spent() {
+                continue; // It ends, unless a shortcut of A was wrong.
             }
             let tolerance = self.resolution_along(&normal);
             // On the boundary of A, as far as arithmetic can tell?
@@ -167,6 +176,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         if start.dimension() < N {
             return Ok(Some(Stop::Flat));
         }
+        if query.is_spent() && query.verify()? {
+            return Ok(Some(Stop::Zero));
+        }
         if self.make_simplex(&start.normals()).is_none() {
             return Ok(Some(Stop::Capacity));
         }
@@ -175,30 +187,33 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     }
 
     /// For a Q that is not a ball, expansion towards a few directions of Q can leave facets so near to the origin that
-    /// the margin swallows them, and the bracket open. Then the nearest facets are pushed out too.
-    pub(crate) fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<(), Failure> {
+    /// the margin swallows them, and the bracket open. Then the nearest facets are pushed out too. Is the bracket as narrow as asked for then?
+    pub(crate) fn widen(&mut self, query: &mut Query<'_, T, N>, stop: Stop, key: T) -> Result<bool, Failure> {
         if query.ball.is_some() || stop != Stop::Rounding {
-            return Ok(());
+            return Ok(false);
         }
         let bracket = |polytope: &Self, query: &Query<'_, T, N>| {
             polytope.lower(query, key).map(|lower| Bracket { lower, upper: query.upper() })
         };
         for _ in 0..WIDENINGS * N {
             if bracket(self, query).is_some_and(|b| query.is_met(&b)) {
-                return Ok(());
+                return Ok(true);
             }
-            let Some((index, normal, offset)) = self.nearest_facet() else { return Ok(()) };
+            if query.interrupted().is_some() {
+                return Ok(false);
+            }
+            let Some((index, normal, offset)) = self.nearest_facet() else { return Ok(false) };
             let (vertex, height) = query.support(&normal)?;
             let tolerance = self.resolution_along(&normal);
             if height - offset <= tolerance + tolerance {
-                return Ok(());
+                return Ok(false);
             }
             match self.insert(index, vertex, self.resolution()) {
                 Some(Insertion::Done) => self.rate_fresh(query)?,
-                _ => return Ok(()),
+                _ => return Ok(false),
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// The simplex of the surface that touches the largest d Q. For a ball, the one around the foot of the perpendicular on

@@ -1,7 +1,8 @@
 //! The plans of a query: what it needs is done, and nothing else.
 //!
 //! ```text
-//!  rays     conewise  expansion   polytopal Q; any Q in any memory; Algorithm 1
+//!  race                           polytopal Q: rays or expansion, by cost
+//!  rays     conewise  expansion   one ray per vertex; any Q in any memory; Algorithm 1
 //!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
 //!      ray                        the simplex that a ray pierces
 //!       basis                     its points, and the inverse of their matrix
@@ -11,6 +12,7 @@ pub(crate) mod basis;
 mod cone;
 mod conewise;
 pub(crate) mod expansion;
+pub(crate) mod race;
 mod ray;
 pub(crate) mod rays;
 pub(crate) mod shoot;

@@ -15,6 +15,11 @@
 //! The first corners are *artificial*: points at a tiny distance along the axes, in the orthant of q. If the ball of that
 //! radius is in A they all leave; while one carries weight there is no lower bound.
 //!
+//! If they do not, the origin is on the boundary of A, or near it, and the ray may leave A at once. That is decided by a linear program of its own, the
+//! first phase of the simplex method: from the same corners, the weight of the artificial ones is what is minimised. Either it
+//! vanishes, and the ray goes on without them; or y.x = 0 separates: A is below that plane, up to rounding, and q above.
+//! (An artificial corner without weight must not get any: the next point that has a coordinate there, of either sign, replaces it.)
+//!
 //! # Rounding
 //!
 //! The inverse is updated, and its error is not bounded; it does not need to be. The weights >= 0 stand for a point
@@ -25,32 +30,76 @@ use crate::scalar::{Real, Vector, norm};
 use crate::simplex::{Corner, Simplex, Vertex};
 use heapless::Vec;
 
+/// What is minimised.
+#[derive(Clone, Copy, PartialEq)]
+enum Phase {
+    /// All weights: artificial corners are points like others.
+    Near,
+    /// The weights of artificial corners: is the target in the cone over A?
+    Reaching,
+    /// The weights of the others; artificial ones have none.
+    Within,
+}
+
 /// A ray and the simplex that it pierces.
 #[derive(Clone)]
 pub(crate) struct Ray<T, const N: usize> {
+    /// Where the ray begins; all points are seen from there.
+    pub from: Vector<T, N>,
+    /// Is the target a point of Q?
+    pub measures: bool,
     target: Vector<T, N>,
     basis: Basis<T, N>,
     /// The target's coordinates in the basis, >= 0.
     weights: Vector<T, N>,
+    phase: Phase,
 }
 
 impl<T: Real, const N: usize> Ray<T, N> {
     /// A ray along `target` from artificial corners at the distance `size` > 0.
     pub fn new(target: &Vector<T, N>, size: T) -> Self {
         let along = target.map(|x| if x < T::zero() { -size } else { size });
-        Ray { target: *target, basis: Basis::new(&along), weights: target.map(|x| x.abs() / size) }
+        let weights = target.map(|x| x.abs() / size);
+        let basis = Basis::new(&along);
+        Ray { from: Vector::zeros(), measures: true, target: *target, basis, weights, phase: Phase::Near }
+    }
+
+    /// The same from another point of A, for another purpose.
+    pub fn begin(from: &Vector<T, N>, target: &Vector<T, N>, size: T) -> Self {
+        Ray { from: *from, measures: false, ..Self::new(target, size) }
+    }
+
+    /// What h_Q is at least along a direction, where it is worth knowing; else next to nothing.
+    pub fn floor(&self, direction: &Vector<T, N>) -> T {
+        if self.measures { direction.dot(&self.target) } else { T::TINY }
     }
 
     /// The ray along another target, if that pierces the same simplex.
     pub fn aimed(mut self, target: &Vector<T, N>) -> Option<Self> {
         self.target = *target;
         self.weights = self.basis.coordinates(target);
-        self.weights.iter().all(|&w| w >= T::zero()).then_some(self)
+        let idle = |i: usize| self.phase == Phase::Near || !self.basis.artificial[i];
+        (0..N).all(|i| self.weights[i] >= T::zero() && idle(i)).then_some(self)
     }
 
-    /// The plane y.x = 1 through the corners.
+    /// Goes over to the program that decides whether the ray leaves A at once.
+    pub fn reach_out(&mut self) {
+        self.phase = Phase::Reaching;
+    }
+
+    /// Is that still undecided?
+    pub fn is_reaching(&self) -> bool {
+        self.phase == Phase::Reaching
+    }
+
+    /// The plane y.x = 1 through the corners; while the ray is reaching, y.x = 0 through those that are points of A.
     pub fn plane(&self) -> Vector<T, N> {
-        self.basis.plane(&Vector::repeat(T::one()))
+        let cost = |artificial: bool| match self.phase {
+            Phase::Near => true,
+            Phase::Reaching => artificial,
+            Phase::Within => !artificial,
+        };
+        self.basis.plane(&Vector::from(self.basis.artificial.map(|a| if cost(a) { T::one() } else { T::zero() })))
     }
 
     /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
@@ -76,6 +125,9 @@ impl<T: Real, const N: usize> Ray<T, N> {
                 leaving = Some((i, self.weights[i] / pivot));
             }
         }
+        if let Some((idle, share)) = self.idle(&shares, threshold) {
+            (leaving, pivot) = (Some((idle, T::zero())), share.abs());
+        }
         let Some((out, step)) = leaving else { return false };
         if pivot < largest * T::ROUNDOFF.root() {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
@@ -85,7 +137,41 @@ impl<T: Real, const N: usize> Ray<T, N> {
             let left = (self.weights[i] - shares[i] * step).at_least(T::zero());
             self.weights[i] = if i == out { step } else { left };
         }
+        self.arrive(T::count(64 * N) * T::ROUNDOFF);
         true
+    }
+
+    /// The artificial corner without weight at which a point has the largest coordinate.
+    fn idle(&self, shares: &Vector<T, N>, threshold: T) -> Option<(usize, T)> {
+        let mut found: Option<(usize, T)> = None;
+        for i in 0..N {
+            let most = found.map_or(threshold, |(_, share)| share.abs());
+            if self.phase == Phase::Within && self.basis.artificial[i] && shares[i].abs() > most {
+                found = Some((i, shares[i]));
+            }
+        }
+        found
+    }
+
+    /// While the ray is reaching: is what artificial corners carry of the target no more than this share of it? Then they carry nothing from now on.
+    pub fn arrive(&mut self, share: T) -> bool {
+        let carried = (0..N).filter(|&i| self.basis.artificial[i]);
+        let left = carried.fold(Vector::<T, N>::zeros(), |sum, i| sum + self.basis.points[i].point * self.weights[i]);
+        let arrives = self.phase == Phase::Reaching && norm(&left) <= norm(&self.target) * share;
+        if arrives {
+            self.phase = Phase::Within;
+            self.lay_down();
+        }
+        arrives
+    }
+
+    /// Artificial corners within the cone over A have no weight.
+    fn lay_down(&mut self) {
+        for i in 0..N {
+            if self.phase == Phase::Within && self.basis.artificial[i] {
+                self.weights[i] = T::zero();
+            }
+        }
     }
 
     /// (t, e): t q is at most e off a point of conv A, up to the rounding of one sum. `None` while an artificial corner
@@ -105,6 +191,7 @@ impl<T: Real, const N: usize> Ray<T, N> {
     pub fn polish(&mut self) {
         self.basis.polish();
         self.weights = self.basis.coordinates(&self.target).map(|w| w.at_least(T::zero()));
+        self.lay_down();
     }
 
     /// The pierced simplex; its weights are those of the crossing.

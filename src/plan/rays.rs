@@ -14,9 +14,14 @@
 //! * Otherwise Q (a segment, say) says nothing about the other directions, and A must have a margin of its own: rays along the axes
 //!   and back along their mean show a ball of radius r in A + mB, so A contains the ball of radius
 //!   r - m, and the convex combination of λv + mB and that ball puts λ (1 - m / r) v in A.
+//! * The origin may lie on the boundary of A, without a margin. Where A contains it by definition
+//!   ([`contains_origin`](crate::support::Support::contains_origin)), balls of radius r around the points s v of the rays do: the same
+//!   combination puts (λ - (λ - s) m / r) v in A, and the segment from there to the origin is in A because both ends are. (r is concave along a ray, so
+//!   the nearer s to λ, the less is lost, as long as r is well above m.) A ray along the boundary of A has no such ball: how much of it is in A
+//!   is not for arithmetic to tell, and the answer is that 0 <= d <= λ.
 
 use super::ray::Ray;
-use super::shoot::{Shot, shoot};
+use super::shoot::{Shot, shoot, shoot_from};
 use crate::answer::Stop;
 use crate::bounds::Bracket;
 use crate::query::Query;
@@ -28,6 +33,9 @@ use crate::support::Failure;
 /// lower bound loses to rounding, where that was too much.
 const FIRST_GAP: f64 = 0.5;
 
+/// Where balls are looked for when there is none around the origin: s / λ.
+const FAR: f64 = 0.96875;
+
 /// What the rays have shown.
 pub(crate) struct Crossings<T, const N: usize> {
     pub stop: Stop,
@@ -35,89 +43,182 @@ pub(crate) struct Crossings<T, const N: usize> {
     pub witness: Simplex<T, N>,
 }
 
-/// d by one ray per vertex of Q. `None` when rays cannot decide: Q is not polytopal, or the origin is not certainly inside A.
-#[inline(never)]
-pub(crate) fn solve_rays<T: Real, const N: usize>(
-    query: &mut Query<'_, T, N>,
-) -> Result<Option<Crossings<T, N>>, Failure> {
-    let count = query.rays();
-    if count == 0 {
-        return Ok(None);
-    }
-    if !(query.size() > T::zero()) {
-        let first = query.first_direction();
-        query.support(&first)?; // A does not know its extent: the first corners need a size.
-    }
-    let mut reserve = T::zero();
-    let mut found: Option<Crossings<T, N>> = None;
-    for gap in [T::of(FIRST_GAP), T::zero(), T::zero()] {
-        if gap > T::zero() && !query.may_be_cut_short() {
-            continue;
+/// Vertices of Q that are the origin, between two questions for the caller's deadline.
+const IDLE: usize = 1024;
+
+/// d by one ray per vertex of Q: as far as it has come.
+pub(crate) struct RaySearch<T, const N: usize> {
+    count: usize,
+    /// This pass: the share of d that it leaves open, and what it has shown. The next vertex, and the last ray.
+    gap: T,
+    rays: Rays<T, N>,
+    index: usize,
+    last: Option<Ray<T, N>>,
+    /// What the lower bound loses to rounding.
+    reserve: T,
+    /// Is this the pass that knows that?
+    again: bool,
+    /// The origin is on the boundary of A, up to rounding.
+    at_edge: bool,
+    /// What the passes before have shown.
+    found: Option<Crossings<T, N>>,
+}
+
+impl<T: Real, const N: usize> RaySearch<T, N> {
+    /// Nothing is shot yet. A has been asked for its first points.
+    pub fn new(query: &Query<'_, T, N>) -> Self {
+        RaySearch {
+            count: query.rays(),
+            gap: if query.may_be_cut_short() { T::of(FIRST_GAP) } else { T::zero() },
+            rays: Rays::new(),
+            index: 0,
+            last: None,
+            reserve: T::zero(),
+            again: false,
+            at_edge: false,
+            found: None,
         }
-        let (rays, radius) = match (shoot_all(query, count, gap, reserve), &mut found) {
-            (Ok(Some(shot)), _) => shot,
-            (Err(failure), None) => return Err(failure),
-            // What an earlier pass has shown still holds.
-            (Err(Failure(code)), Some(earlier)) => {
-                earlier.stop = Stop::Failed(code);
-                return Ok(found);
+    }
+
+    /// Rays left, if this pass is the last, or the next one where this is for an early bound. (Those around the origin are short.)
+    pub fn left(&self, query: &Query<'_, T, N>) -> u64 {
+        let around = if query.inner_radius() > T::zero() { 0 } else { N.div_ceil(2) };
+        let again = if self.gap > T::zero() { self.count.saturating_add(around) } else { 0 };
+        self.count.saturating_sub(self.index).saturating_add(around).saturating_add(again) as u64
+    }
+
+    /// Goes on, for one ray at least, until the turn is over: `None`. At the end what the rays have shown; nothing when they cannot decide, as
+    /// the origin is not certainly inside A.
+    #[inline(never)]
+    #[allow(clippy::type_complexity)]
+    pub fn advance(&mut self, query: &mut Query<'_, T, N>) -> Result<Option<Option<Crossings<T, N>>>, Failure> {
+        if !(query.size() > T::zero()) {
+            return Ok(Some(None)); // A is the origin, as far as it was asked: no size for the first corners.
+        }
+        loop {
+            match self.shoot_all(query) {
+                Ok(Shot::Hit) => {}
+                Ok(Shot::Stopped(Stop::Turn)) => return Ok(None),
+                // What an earlier pass has shown still holds.
+                Ok(shot) => {
+                    if matches!(shot, Shot::Left) {
+                        query.spend();
+                    }
+                    let stop = query.exhausted().unwrap_or(Stop::Rounding);
+                    return Ok(Some(self.found.take().map(|earlier| Crossings { stop, ..earlier })));
+                }
+                Err(Failure(code)) => {
+                    let found = self.found.take().ok_or(Failure(code))?;
+                    return Ok(Some(Some(Crossings { stop: Stop::Failed(code), ..found })));
+                }
             }
-            (Ok(None), None) => return Ok(None),
-            (Ok(None), Some(earlier)) => {
-                earlier.stop = query.exhausted().unwrap_or(Stop::Rounding);
-                return Ok(found);
+            if self.conclude(query)? {
+                if self.at_edge {
+                    query.spend(); // No surface around the origin proves more.
+                }
+                return Ok(Some(self.found.take()));
             }
-        };
+        }
+    }
+
+    /// The rays of this pass, each until it cannot be the one that counts.
+    fn shoot_all(&mut self, query: &mut Query<'_, T, N>) -> Result<Shot, Failure> {
+        while let Some(target) = next_target(query, &mut self.index, self.count)? {
+            let (gap, reserve) = (self.gap, self.reserve);
+            let level = |query: &Query<'_, T, N>| query.level(gap, reserve + query.reserve(4));
+            let (ray, shot) = shoot(query, &target, self.last.take(), T::zero(), level)?;
+            if !matches!(shot, Shot::Hit) {
+                return Ok(shot);
+            }
+            if !self.rays.take(&ray) {
+                return Ok(Shot::Stopped(Stop::Rounding));
+            }
+            self.last = Some(ray);
+            if query.work.is_over() && self.index < self.count {
+                return Ok(Shot::Stopped(Stop::Turn));
+            }
+        }
+        Ok(query.stopped().map_or(Shot::Hit, Shot::Stopped))
+    }
+
+    /// What this pass has shown: is that the end?
+    fn conclude(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
+        let rays = core::mem::replace(&mut self.rays, Rays::new());
         let margin = query.margin() + rays.error + rays.least * query.gauge_error();
-        let loss = match (query.inner_radius(), radius) {
-            (inner, _) if inner > T::zero() => margin / inner,
-            (_, Some(radius)) if radius > margin => rays.least * (margin / radius),
-            _ => return Ok(found),
-        };
-        let Some(witness) = rays.witness else { return Ok(found) };
+        let Some(witness) = rays.witness else { return Ok(true) };
+        let Some(loss) = self.cost_of_margin(query, rays.least, margin)? else { return Ok(true) };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
         if !(lower > T::zero()) {
-            return Ok(found);
+            return Ok(true);
         }
         let verdict =
             query.verdict(&Bracket { lower, upper: query.upper() }).filter(|_| query.verify().is_ok_and(|held| held));
-        found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness });
-        if verdict.is_some() {
-            break;
-        }
-        reserve = loss * T::of(1.25);
+        self.found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness });
+        let is_last = self.again;
+        self.again = !(self.gap > T::zero());
+        (self.gap, self.reserve) = (T::zero(), loss * T::of(1.25));
+        (self.index, self.last) = (0, None);
+        Ok(verdict.is_some() || is_last)
     }
-    Ok(found)
+
+    /// What `margin` costs of the least crossing (see above); `None` when nothing of it is certain.
+    fn cost_of_margin(&mut self, query: &mut Query<'_, T, N>, least: T, margin: T) -> Result<Option<T>, Failure> {
+        let inner = query.inner_radius();
+        if inner > T::zero() {
+            return Ok(Some(margin / inner));
+        }
+        let radius = ball_inside(query, &Vector::zeros(), T::one())?;
+        self.at_edge = radius == Some(T::zero());
+        let around = radius.filter(|&radius| radius > margin).map(|radius| least * (margin / radius));
+        if !query.contains_origin() || around.is_some_and(|loss| loss <= query.slack() * T::of(0.25)) {
+            return Ok(around);
+        }
+        let rest = T::one() - T::of(FAR);
+        let radius = balls_along(query, self.count, least * T::of(FAR), rest)?;
+        // (What is seen from elsewhere is rounded once more.)
+        let margin = margin + query.resolution();
+        let along = radius.filter(|&radius| radius > margin).map(|radius| least * rest * (margin / radius));
+        Ok(around.into_iter().chain(along).reduce(T::at_most))
+    }
 }
 
-/// All rays, each until it cannot be the one that counts; and, where Q says nothing about some directions, the radius of a ball in A.
-#[allow(clippy::type_complexity)]
-fn shoot_all<T: Real, const N: usize>(
+/// The next vertex of Q that is not the origin, which is in A whenever d >= 0. `None` after the last, and where the caller has no more time.
+fn next_target<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
+    index: &mut usize,
     count: usize,
-    gap: T,
-    reserve: T,
-) -> Result<Option<(Rays<T, N>, Option<T>)>, Failure> {
-    let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
-    let mut last: Option<Ray<T, N>> = None;
-    for index in 0..count {
-        let target = query.ray(index);
+) -> Result<Option<Vector<T, N>>, Failure> {
+    while *index < count {
+        if *index > 0 && (*index).is_multiple_of(IDLE) && query.interrupted().is_some() {
+            return Ok(None);
+        }
+        let target = query.ray(*index);
+        *index += 1;
+        query.work.add(1);
         if !finite(&target) {
             return Err(Failure(crate::NOT_FINITE));
         }
-        if target.iter().all(|&x| x == T::zero()) {
-            continue; // The origin is in A whenever d >= 0.
+        if target.iter().any(|&x| x != T::zero()) {
+            return Ok(Some(target));
         }
-        let (ray, shot) =
-            shoot(query, &target, last.take(), T::zero(), |query| query.level(gap, reserve + query.reserve(4)))?;
-        if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
-            return Ok(None);
-        }
-        last = Some(ray);
     }
-    let radius = if query.inner_radius() > T::zero() { None } else { ball_inside(query)? };
-    Ok(Some((rays, radius)))
+    Ok(None)
+}
+
+/// The least radius of the balls in A, up to the margin, around the points at `distance` on all rays.
+fn balls_along<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    count: usize,
+    distance: T,
+    rest: T,
+) -> Result<Option<T>, Failure> {
+    let (mut radius, mut index) = (T::HUGE, 0);
+    while let Some(target) = next_target(query, &mut index, count)? {
+        let Some(own) = ball_inside(query, &(target * distance), rest)? else { return Ok(None) };
+        radius = radius.at_most(own);
+    }
+    Ok((query.stopped().is_none()).then_some(radius))
 }
 
 /// The least crossing of several rays.
@@ -129,6 +230,10 @@ struct Rays<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Rays<T, N> {
+    fn new() -> Self {
+        Rays { least: T::HUGE, error: T::zero(), witness: None }
+    }
+
     fn take(&mut self, ray: &Ray<T, N>) -> bool {
         let Some((t, miss)) = ray.reach().filter(|(t, miss)| t.finite() && miss.finite()) else { return false };
         self.error = self.error.at_least(miss);
@@ -140,26 +245,33 @@ impl<T: Real, const N: usize> Rays<T, N> {
     }
 }
 
-/// Radius of a ball around the origin in A, up to the margin: the points e_i and minus their mean, scaled to their crossings,
-/// have it in their hull.
+/// Radius of a ball around `center` in A, up to the margin: the points e_i and minus their mean, scaled to their crossings,
+/// have it in their hull. 0 where A ends at the center. What the margin costs is this share `rest` of d times margin over radius.
 #[inline(never)]
-fn ball_inside<T: Real, const N: usize>(query: &mut Query<'_, T, N>) -> Result<Option<T>, Failure> {
-    let mut rays = Rays { least: T::HUGE, error: T::zero(), witness: None };
+fn ball_inside<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    center: &Vector<T, N>,
+    rest: T,
+) -> Result<Option<T>, Failure> {
+    let mut rays = Rays::new();
     let root = T::count(N).root();
     // The facet opposite e_k of the simplex { e_i, -(1 .. 1) / sqrt(N) } has the normal with 1 in all places but k.
     let tilt = root + T::count(N - 1);
     let inradius = T::one() / (T::count(N - 1) + tilt * tilt).root();
     // So large that the margin costs a tenth of the tolerance, and never small.
     let costly = query.margin() * query.ratio() / (query.slack() * T::of(0.1)) / inradius;
-    let enough = (query.reach() * T::of(0.02)).at_least(costly).at_most(query.reach());
+    let enough = (query.reach() * T::of(0.02)).at_least(costly).at_most(query.reach()) * rest;
     for index in 0..=N {
         let target = Vector::<T, N>::from_fn(|i, _| match index {
             _ if index == N => -T::one() / root,
             _ if i == index => T::one(),
             _ => T::zero(),
         });
-        let (ray, shot) = shoot(query, &target, None, T::of(0.1), |_| enough)?;
-        if matches!(shot, Shot::Stopped(_)) || !rays.take(&ray) {
+        let (ray, shot) = shoot_from(query, center, &target, T::of(0.1), |_| enough)?;
+        if matches!(shot, Shot::Left) {
+            return Ok(Some(T::zero()));
+        }
+        if !matches!(shot, Shot::Hit) || !rays.take(&ray) {
             return Ok(None);
         }
     }

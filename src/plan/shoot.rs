@@ -4,23 +4,26 @@ use super::ray::Ray;
 use crate::answer::Stop;
 use crate::query::Query;
 use crate::scalar::{Real, Vector, finite, norm};
+use crate::simplex::Vertex;
 use crate::support::Failure;
 
 /// More steps than any ray takes: rounding ends them earlier.
 const STEPS: usize = 512;
 
-/// Sizes of the artificial corners, as shares of A's: the larger, the better the arithmetic; the smaller, the nearer to the origin
-/// may A end.
-const SPECKS: [f64; 2] = [1e-3, 1e-6];
+/// Size of the artificial corners, as a share of A's: the larger, the better the arithmetic; the smaller, the nearer to the origin may A end
+/// before that takes a program of its own.
+const SPECK: f64 = 1e-3;
 
 /// Where a shot ended.
 pub(crate) enum Shot {
     /// The crossing is known as well as asked for, or as arithmetic allows.
     Hit,
+    /// The ray leaves A where it begins, up to rounding.
+    Left,
     Stopped(Stop),
 }
 
-/// A ray along `target`, shot until the crossing is beyond `level`, or known to a share `accuracy` of its distance; from the simplex that
+/// A ray from the origin along `target`, shot until the crossing is beyond `level`, or known to a share `accuracy` of its distance; from the simplex that
 /// another ray pierced, if this one does as well.
 #[inline(never)]
 pub(crate) fn shoot<T: Real, const N: usize>(
@@ -30,16 +33,34 @@ pub(crate) fn shoot<T: Real, const N: usize>(
     accuracy: T,
     level: impl Fn(&Query<'_, T, N>) -> T,
 ) -> Result<(Ray<T, N>, Shot), Failure> {
-    let mut ray = match near.and_then(|ray| ray.aimed(target)) {
+    let ray = match near.and_then(|ray| ray.aimed(target)) {
         Some(ray) => ray,
-        None => Ray::new(target, query.size() * T::of(SPECKS[0])),
+        None => Ray::new(target, query.size() * T::of(SPECK)),
     };
+    shoot_on(query, ray, accuracy, level)
+}
+
+/// The same from another point of A.
+pub(crate) fn shoot_from<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    from: &Vector<T, N>,
+    target: &Vector<T, N>,
+    accuracy: T,
+    level: impl Fn(&Query<'_, T, N>) -> T,
+) -> Result<(Ray<T, N>, Shot), Failure> {
+    let ray = Ray::begin(from, target, query.size() * T::of(SPECK));
+    shoot_on(query, ray, accuracy, level)
+}
+
+fn shoot_on<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    mut ray: Ray<T, N>,
+    accuracy: T,
+    level: impl Fn(&Query<'_, T, N>) -> T,
+) -> Result<(Ray<T, N>, Shot), Failure> {
     let mut shot = follow(query, &mut ray, accuracy, &level)?;
-    for share in SPECKS.iter().skip(1) {
-        if matches!(shot, Shot::Stopped(_)) || ray.reach().is_some() {
-            break;
-        }
-        ray = Ray::new(target, query.size() * T::of(*share));
+    if matches!(shot, Shot::Hit) && ray.reach().is_none() {
+        ray.reach_out();
         shot = follow(query, &mut ray, accuracy, &level)?;
     }
     Ok((ray, shot))
@@ -77,13 +98,24 @@ fn follow<T: Real, const N: usize>(
             break;
         }
         let direction = plane * (T::one() / length);
-        let (vertex, height) = query.support(&direction)?;
+        let floor = if query.spares_gauge() { ray.floor(&direction) } else { T::zero() };
+        let (vertex, height) = query.support_beyond(&direction, floor)?;
         if query.is_outside(&direction, height) {
             return Ok(Shot::Stopped(Stop::Outside));
         }
-        let offset = T::one() / length;
+        if query.is_spent() {
+            return Ok(Shot::Stopped(Stop::Zero));
+        }
+        let height = height - direction.dot(&ray.from);
+        let offset = if ray.is_reaching() { T::zero() } else { T::one() / length };
         let beyond = height - offset;
-        if beyond <= query.resolution().at_least(accuracy * offset) {
+        if ray.is_reaching() && beyond <= query.margin() {
+            if ray.arrive(T::ROUNDOFF.root()) {
+                continue; // Along the boundary of A: q is in the cone over A, or nearly. What it misses is measured in the end.
+            }
+            return Ok(Shot::Left);
+        }
+        if beyond <= query.resolution() || beyond <= accuracy * offset {
             if settle(ray, query, &mut polished) {
                 break;
             }
@@ -92,7 +124,8 @@ fn follow<T: Real, const N: usize>(
         if let Some(stop) = query.exhausted() {
             return Ok(Shot::Stopped(stop));
         }
-        if !ray.enter(&vertex) {
+        let seen = Vertex { point: vertex.point - ray.from, ..vertex };
+        if !ray.enter(&seen) {
             break;
         }
         polished = false;

@@ -185,6 +185,24 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         self.height + self.bounds.radius <= self.margin_along(&self.direction) * T::count(64)
     }
 
+    /// Is the lower end at 0 all that is left to find out? So it is as soon as a height of A is within its rounding of 0: no surface proves
+    /// more than d >= 0 then. (Not along a direction in which Q has next to no extent, which says nothing of d; and a threshold so small may still be
+    /// decided by a lower height.)
+    pub fn is_spent(&self) -> bool {
+        let nothing = self.height + self.bounds.radius <= self.margin_along(&self.direction) && !self.apart;
+        self.spent || nothing && self.options.threshold.is_none() && self.is_wide()
+    }
+
+    /// Is Q about as wide along the best direction as elsewhere?
+    fn is_wide(&self) -> bool {
+        self.inner_radius() > T::zero() || self.gauge * T::count(16) >= self.widest
+    }
+
+    /// Says so, for other reasons.
+    pub fn spend(&mut self) {
+        self.spent = true;
+    }
+
     /// Is this bracket about as narrow as rounding allows?
     pub fn is_tight(&self, bracket: &Bracket<T>) -> bool {
         bracket.upper - bracket.lower <= self.margin() * T::count(64) * self.per_ball

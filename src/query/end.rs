@@ -23,7 +23,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         // The shortcut was wrong: what it said is forgotten.
         (self.height, self.ratio, self.apart) = (T::HUGE, T::HUGE, false);
         self.rival = None;
-        self.note(&direction, height, &point)?;
+        self.note(&direction, height, &point, T::zero())?;
         Ok(false)
     }
 
@@ -82,8 +82,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             witness = Simplex::new(Vertex::empty());
             Stop::Failed(crate::NOT_FINITE)
         };
-        let lower = self.floored(lower);
         let upper = self.upper();
+        let mut lower = self.floored(lower);
+        if lower < T::zero() && upper >= T::zero() && self.contains_origin() {
+            (lower, witness) = (T::zero(), Simplex::new(Vertex::empty()));
+        }
         // Bounds that contradict each other say that A's support function is none (or its error larger than it says).
         let (lower, stop) = match stop {
             Stop::Failed(_) if lower > upper => (-T::HUGE, stop),

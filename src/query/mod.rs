@@ -10,6 +10,9 @@ use crate::support::{Failure, Support};
 
 mod bracket;
 mod end;
+mod work;
+
+pub(crate) use work::Work;
 
 /// How a query ends, and where it looks first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +23,8 @@ pub struct Options<T, const N: usize> {
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most points to add; 0, the default: 50,000, less than a second in six dimensions. (What a query needs grows with a power
-    /// of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth.)
+    /// Most points to add; 0, the default: 50,000, and 64 for each vertex of a polytopal Q. (What a query needs grows with a power
+    /// of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth; how long that takes, `examples/worst_case.rs` measures.)
     pub max_iterations: u32,
     /// The direction to look in first (any length, not zero): where the answer was last time.
     pub guess: Option<Vector<T, N>>,
@@ -51,8 +54,9 @@ impl<T: Real, const N: usize> Options<T, N> {
     }
 }
 
-/// Points added when the caller sets no limit.
+/// Points added when the caller sets no limit; and for each vertex of a polytopal Q.
 const MAX_ITERATIONS: u32 = 50_000;
+const MAX_ITERATIONS_PER_VERTEX: u32 = 64;
 
 /// Directions farther apart than this cosine (8 degrees) are not two guesses at the same minimiser.
 const RIVAL_COSINE: f64 = 0.99;
@@ -95,10 +99,17 @@ pub(crate) struct Query<'q, T, const N: usize> {
     apart: bool,
     /// The lowest key of a facet that was not queued because it was above `ratio` then.
     skipped: T,
+    /// The largest value of a general Q that was seen.
+    widest: T,
+    /// Nothing but the lower end at 0 is left to be found out.
+    spent: bool,
     /// Ask the support function without its shortcuts.
     exhaustive: bool,
     pub iterations: u32,
+    /// The most of them.
+    limit: u32,
     support_calls: u32,
+    pub work: Work<N>,
     /// Affine dimension of the core.
     pub dimension: usize,
     /// How the query is being answered.
@@ -156,9 +167,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             seeks_rivals: true,
             apart: false,
             skipped: T::HUGE,
+            widest: T::zero(),
+            spent: false,
             exhaustive: false,
             iterations: 0,
+            limit: match options.max_iterations {
+                0 => MAX_ITERATIONS.saturating_add(MAX_ITERATIONS_PER_VERTEX.saturating_mul(q.vertex_count() as u32)),
+                limit => limit,
+            },
             support_calls: 0,
+            work: Work::new(q.vertex_count()),
             dimension: N,
             plan: Plan::Expansion,
             floor: T::zero(),
@@ -256,6 +274,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Asks A along a unit direction, and keeps the upper bound if it is the best.
     pub fn support(&mut self, direction: &Vector<T, N>) -> Result<(Vertex<T, N>, T), Failure> {
+        self.support_beyond(direction, T::zero())
+    }
+
+    /// The same where h_Q is at least `floor`: if that is above 0 and makes the direction no better than the best one, Q is not asked.
+    pub fn support_beyond(&mut self, direction: &Vector<T, N>, floor: T) -> Result<(Vertex<T, N>, T), Failure> {
+        self.work.add(Work::<N>::STEP);
         self.support_calls = self.support_calls.saturating_add(1);
         let (point, witness) =
             if self.exhaustive { self.a.exhaustive(direction)? } else { self.a.support_with_witness(direction)? };
@@ -263,7 +287,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             if self.scale == T::one() { (point, witness) } else { (point * self.scale, witness * self.scale) };
         self.see(&point)?;
         let height = direction.dot(&point);
-        self.note(direction, height, &point)?;
+        self.note(direction, height, &point, floor)?;
         Ok((Vertex { point, witness }, height))
     }
 
@@ -288,7 +312,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         Ok(())
     }
 
-    fn note(&mut self, direction: &Vector<T, N>, height: T, point: &Vector<T, N>) -> Result<(), Failure> {
+    fn note(&mut self, direction: &Vector<T, N>, height: T, point: &Vector<T, N>, floor: T) -> Result<(), Failure> {
         let top = height + self.bounds.radius;
         let (gauge, ratio) = if let Some(radius) = self.ball {
             (radius, top * self.per_ball)
@@ -298,8 +322,12 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
                 (self.apart, self.ratio) = (true, T::HUGE);
             }
             (T::one(), height)
+        } else if floor > T::zero() && !(top < self.ratio * floor) {
+            return Ok(());
         } else {
+            self.work.add(self.work.gauge());
             let gauge = self.gauge(direction)?;
+            self.widest = self.widest.at_least(gauge);
             if gauge <= self.gauge_error {
                 return Ok(()); // Q has no extent that way: it bounds nothing.
             }
@@ -374,6 +402,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         Vertex { point: self.point, witness: self.point }
     }
 
+    /// Does a value of Q cost more than a step of a ray? Then Q is asked only where it may count.
+    pub fn spares_gauge(&self) -> bool {
+        self.work.gauge() > Work::<N>::STEP
+    }
+
     /// How many rays decide the query, for a polytopal Q; else 0.
     pub fn rays(&self) -> usize {
         self.q.vertex_count()
@@ -385,6 +418,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     pub fn inner_radius(&self) -> T {
         self.q.inner_radius()
+    }
+
+    /// Is the origin certainly in A, whatever its heights?
+    pub fn contains_origin(&self) -> bool {
+        self.a.contains_origin()
     }
 
     /// A's size, as far as it is known.
@@ -404,11 +442,14 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     }
 
     /// The key of a facet, eq. 24: no more than its true distance with respect to Q, up to the margin of the bracket.
-    pub fn key(&self, normal: &Vector<T, N>, offset: T) -> Result<T, Failure> {
+    pub fn key(&mut self, normal: &Vector<T, N>, offset: T) -> Result<T, Failure> {
         let top = offset + self.bounds.radius;
         let bottom = match self.ball {
             Some(_) => return Ok(top * self.per_ball),
-            None => self.gauge(normal)? + self.gauge_error,
+            None => {
+                self.work.add(Work::<N>::FACET + self.work.gauge());
+                self.gauge(normal)? + self.gauge_error
+            }
         };
         Ok(if bottom > T::zero() { top / bottom } else { T::HUGE })
     }
@@ -484,6 +525,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         height < T::zero() && height + self.margin_along(direction) < T::zero()
     }
 
+    /// The limit that has been reached.
+    pub fn stopped(&self) -> Option<Stop> {
+        self.stopped
+    }
+
     /// Has the caller set a limit?
     pub fn may_be_cut_short(&self) -> bool {
         self.options.max_iterations != 0 || self.interrupt.is_some()
@@ -491,16 +537,21 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Counts an iteration; tells why there must be none when a limit is reached.
     pub fn exhausted(&mut self) -> Option<Stop> {
-        if self.stopped.is_none() && self.iterations >= self.options.limit() {
+        if self.stopped.is_none() && self.iterations >= self.limit {
             self.stopped = Some(Stop::Iterations);
         }
-        if self.stopped.is_none() && self.interrupt.is_some_and(|interrupt| interrupt()) {
-            self.stopped = Some(Stop::Interrupted);
-        }
-        if self.stopped.is_some() {
+        if self.interrupted().is_some() {
             return self.stopped;
         }
         self.iterations = self.iterations.saturating_add(1);
         None
+    }
+
+    /// Asks the caller, unless a limit has been reached; counts nothing.
+    pub fn interrupted(&mut self) -> Option<Stop> {
+        if self.stopped.is_none() && self.interrupt.is_some_and(|interrupt| interrupt()) {
+            self.stopped = Some(Stop::Interrupted);
+        }
+        self.stopped
     }
 }

@@ -160,6 +160,13 @@ pub trait Support<T: Real, const N: usize> {
         false
     }
 
+    /// Does the set, by its definition, contain the origin? `true` is a proof, `false` says nothing. Where the origin lies on the boundary no
+    /// support value can tell, and then this is what d >= 0 rests on. The default knows that what is its own mirror image in all coordinates
+    /// does. A wrapper that keeps the origin in its place should forward this.
+    fn contains_origin(&self) -> bool {
+        N < 8 && self.mirrored(u8::MAX >> (8 - N))
+    }
+
     /// The rounding error e of the promise above, as a length. The default, `16 N u extent`, covers a
     /// support mapping that does a few operations on coordinates of size `extent` (u: unit roundoff).
     fn error(&self) -> T {

@@ -39,7 +39,7 @@ pub struct qdist_gauge_f64 {
     /// Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
     pub point: qdist_gauge_point_f64,
     /// With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
-    /// a ray at each (QDIST_PLAN_RAYS).
+    /// a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
     pub vertex: qdist_gauge_vertex_f64,
     /// Which mirror images of Q are Q itself.
     pub mirrored: qdist_mirrored,

@@ -174,6 +174,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     fn mirrored(&self, signs: u8) -> bool {
         self.a.mirrored(signs) && self.b.mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        self.a.contains_origin() || self.b.contains_origin()
+    }
     fn error(&self) -> T {
         let excess = self.excess().abs();
         let put_on = if excess > T::zero() { T::count(N / 2 + 5) * excess + self.extent() } else { T::zero() };

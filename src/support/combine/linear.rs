@@ -82,6 +82,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Linear<S, T, N
     fn has_shortcuts(&self) -> bool {
         self.shape.has_shortcuts()
     }
+    fn contains_origin(&self) -> bool {
+        self.translation.iter().all(|x| x.is_zero()) && self.shape.contains_origin()
+    }
     fn extent(&self) -> T {
         let inner = self.shape.extent();
         if_known(&[inner], self.stretch * total(inner, self.shape.radius()) + self.shift)

@@ -77,4 +77,7 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
         self.set.height_in_two_words(u)
     }
+    fn contains_origin(&self) -> bool {
+        self.set.contains_origin()
+    }
 }

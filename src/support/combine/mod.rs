@@ -126,6 +126,9 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn mirrored(&self, signs: u8) -> bool {
         (**self).mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        (**self).contains_origin()
+    }
     fn error(&self) -> T {
         (**self).error()
     }

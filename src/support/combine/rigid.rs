@@ -115,6 +115,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
     fn has_shortcuts(&self) -> bool {
         self.shape.has_shortcuts()
     }
+    fn contains_origin(&self) -> bool {
+        self.translation.iter().all(|x| x.is_zero()) && self.shape.contains_origin()
+    }
     #[inline]
     fn radius(&self) -> T {
         self.shape.radius() - self.inflation()

@@ -59,6 +59,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
     fn mirrored(&self, signs: u8) -> bool {
         self.shape.mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        self.shape.contains_origin()
+    }
     fn error(&self) -> T {
         self.factor * pair_error(self.shape.error(), self.shape.extent())
     }
@@ -130,6 +133,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
     }
     fn mirrored(&self, signs: u8) -> bool {
         self.shape.mirrored(signs)
+    }
+    fn contains_origin(&self) -> bool {
+        self.shape.contains_origin()
     }
     fn error(&self) -> T {
         self.shape.error()

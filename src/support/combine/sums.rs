@@ -58,6 +58,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     fn mirrored(&self, signs: u8) -> bool {
         self.a.mirrored(signs) && self.b.mirrored(signs)
     }
+    fn contains_origin(&self) -> bool {
+        self.a.contains_origin() && self.b.contains_origin()
+    }
     fn error(&self) -> T {
         pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())
     }
@@ -130,6 +133,9 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
     }
     fn mirrored(&self, signs: u8) -> bool {
         self.a.mirrored(signs) && self.b.mirrored(signs)
+    }
+    fn contains_origin(&self) -> bool {
+        self.a.contains_origin() && self.b.contains_origin()
     }
     fn error(&self) -> T {
         pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())

@@ -1,0 +1,125 @@
+//! A polytopal Q: by rays or by expansion?
+//!
+//! A ray costs about the same for each vertex of Q, whatever A is like: some steps, most of them ended early by what the rays before have shown.
+//! Expansion looks at all vertices for each facet, and how many facets it makes depends on A: ten inside an octahedron, thousands inside a smooth
+//! set of dimension 6; nobody knows before it is done. So expansion begins, and may do as much work as the rays are expected to
+//! need. Then the two take turns, rays three times as long. Both stop where they are and go on from there, each knows the other's upper bounds, and
+//! all of it costs about twice the better plan at most.
+//!
+//! What rays need was measured on octahedra, boxes, ellipsoids and hulls of random points in two to six dimensions, with 1 to 20,000 vertices of
+//! Q: between (N + 9) / 4 steps for each and twice as many. (Where Q says nothing about some directions, N + 1 short rays more are needed.)
+
+use super::expansion::Expanded;
+use super::rays::{Crossings, RaySearch};
+use crate::answer::{Plan, Stop};
+use crate::polytope::Polytope;
+use crate::query::{Query, Work};
+use crate::scalar::Real;
+use crate::support::Failure;
+
+/// The shares of what rays are expected to need that the two may do in a turn, when expansion was not done by then.
+const TURNS: [u64; 2] = [3, 1];
+const OF: u64 = 8;
+
+/// Which plan has answered.
+pub(crate) enum Ended<T, const N: usize> {
+    Rays(Crossings<T, N>),
+    Expansion(Expanded<T>),
+}
+
+/// Expansion from the first simplex, and rays by turns with it, until one of them has an answer.
+#[inline(never)]
+pub(crate) fn race<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+) -> Result<Ended<T, N>, Failure> {
+    let mut rays = RaySearch::new(query);
+    let by_rays = cost(&rays, query);
+    let (mut expands, mut turn) = (true, by_rays);
+    loop {
+        query.work.allow(turn);
+        if expands {
+            let expanded = polytope.expand(query)?;
+            match expanded.stop {
+                Stop::Turn => {}
+                Stop::Rounding | Stop::Capacity => return second(polytope, query, expanded, rays),
+                _ => return Ok(Ended::Expansion(expanded)),
+            }
+        } else if let Some(found) = rays.advance(query)? {
+            return finish(polytope, query, found);
+        }
+        let [by_turns, again] = TURNS;
+        turn = by_rays / OF * if expands { by_turns } else { again };
+        expands = !expands;
+    }
+}
+
+/// Rays alone, where A is flat: they end where it ends along each. `None` where they do not decide the query.
+#[inline(never)]
+pub(crate) fn by_rays<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+) -> Result<Option<Crossings<T, N>>, Failure> {
+    let found = RaySearch::new(query).advance(query)?.flatten();
+    Ok(decided(query, found))
+}
+
+/// The answer after the rays' end.
+fn finish<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    found: Option<Crossings<T, N>>,
+) -> Result<Ended<T, N>, Failure> {
+    query.work.allow(u64::MAX);
+    match decided(query, found) {
+        Some(rays) => Ok(Ended::Rays(rays)),
+        None => polytope.expand(query).map(Ended::Expansion),
+    }
+}
+
+/// The answer after an expansion that memory or rounding has ended: rays need no memory, and may lose less to rounding.
+fn second<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    expanded: Expanded<T>,
+    mut rays: RaySearch<T, N>,
+) -> Result<Ended<T, N>, Failure> {
+    query.work.allow(u64::MAX);
+    if !polytope.widen(query, expanded.stop, expanded.key)? {
+        let found = rays.advance(query)?.flatten();
+        if let Some(rays) = decided(query, found) {
+            return Ok(Ended::Rays(rays));
+        }
+        // (After a limit nothing is asked that would not be asked after a later one.)
+        let end = if query.is_spent() { Some(Stop::Zero) } else { query.stopped() };
+        if let Some(stop) = end {
+            return Ok(Ended::Expansion(Expanded { stop, ..expanded }));
+        }
+    }
+    Ok(Ended::Expansion(expanded))
+}
+
+/// Rays that have decided the query; of others the lower bound is kept.
+fn decided<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    found: Option<Crossings<T, N>>,
+) -> Option<Crossings<T, N>> {
+    let rays = found?;
+    match rays.stop {
+        // Where rounding cost the rays too much, expansion loses less, unless there is nothing left for it.
+        Stop::Rounding if !query.is_spent() => {}
+        // Where they were cut short, expansion may know more.
+        Stop::Iterations | Stop::Interrupted => query.plan = Plan::Rays,
+        _ => {
+            query.plan = Plan::Rays;
+            return Some(rays);
+        }
+    }
+    query.raise(rays.lower);
+    None
+}
+
+/// What the rays may cost.
+fn cost<T: Real, const N: usize>(rays: &RaySearch<T, N>, query: &Query<'_, T, N>) -> u64 {
+    let gauge = if query.spares_gauge() { 0 } else { query.work.gauge() };
+    rays.left(query).saturating_mul((N as u64 + 9) * (Work::<N>::STEP + gauge)) / 4
+}
