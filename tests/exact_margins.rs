@@ -7,11 +7,11 @@ mod common;
 use common::dd::Dd;
 use common::dice::Dice;
 use common::lattice::{
-    Lattice, Lean, Leaning, Point, ball, cuboid, exact, moved, slab, symmetric, truth, truth_in_plane,
+    Lattice, Lean, Leaning, Point, ball, cuboid, exact, moved, planes, slab, symmetric, truth, truth_in_plane,
 };
 use nalgebra::Matrix3;
 use qdist::bounds::{Axes, Bounds};
-use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Vertices};
+use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment, Vertices};
 use qdist::{Answer, Options, Outcome, Plan, Real, Tracker, Vector, Workspace};
 
 fn holds<T: Real>(answer: &Answer<T, 3>, d: Dd, what: &str) {
@@ -55,6 +55,12 @@ fn ask<T: Real>(set: &Lattice, q: &dyn Gauge<T, 3>, d: Dd, what: &str, plans: &m
     let answer = Workspace::<T, 3, 9, 12>::new().solver().solve(set, q, &few);
     holds(&answer, d, &format!("in little memory {what}"));
     plans.count(&answer);
+    // No room for a polytope: rays, where Q has vertices.
+    for options in [exactly, Options::default(), roughly] {
+        let answer = Workspace::<T, 3, 4, 6>::new().solver().solve(set, q, &options);
+        holds(&answer, d, &format!("in the least memory {what}"));
+        plans.count(&answer);
+    }
     let mut tracker = Tracker::new();
     for _ in 0..2 {
         let answer = large.solver().solve_warm(&mut tracker, set, q, T::zero(), &exactly, None);
@@ -288,6 +294,50 @@ fn large_balls_around_small_cores() {
         ask::<f64>(&set, &three, d / Dd::new(3.0), &format!("{case} radius 3"), &mut plans);
         ask::<f32>(&set, &Ball::new(3.0).unwrap(), d / Dd::new(3.0), &format!("{case} radius 3, f32"), &mut plans);
     }
+}
+
+/// A segment from a corner of the set, which tells that the corner is in it: no ball around the origin is, only some along the segment.
+fn segments_from_a_corner<T: Real>(seed: u64, long: i64) {
+    let mut dice = Dice::new(seed);
+    let (mut plans, mut proved) = (Plans::default(), 0);
+    for case in cases(400) {
+        let mut points: Vec<Point> = (0..4 + dice.below(4))
+            .map(|_| [1 + dice.below(long as usize) as i64, dice.below(41) as i64 - 20, dice.below(41) as i64 - 20])
+            .collect();
+        // Inside the cone, or along its boundary.
+        let count = 2 + dice.below(3);
+        let end: Point = std::array::from_fn(|i| points[..count].iter().map(|p| p[i]).sum());
+        points.push([0; 3]);
+        let along = |n: &[i128; 3]| (0..3).map(|i| n[i] * i128::from(end[i])).sum::<i128>();
+        let limits = planes(&points).into_iter().filter(|(n, _)| along(n) > 0);
+        let d = limits.fold(Dd::new(f64::MAX), |d, (n, k)| d.min(exact(k) / exact(along(&n))));
+        if !(d > Dd::ZERO && d < Dd::new(f64::MAX)) {
+            continue; // flat
+        }
+        let e = dice.pick(&[-1.0, 1.0]) * dice.decade(-4.0, -1.0);
+        let lean = dice.pick(&[Lean::None, Lean::By(e)]);
+        let set = Lattice { lean, ..Lattice::new(points) };
+        let q = Segment::new(Vector::from(end.map(|x| T::of(x as f64)))).unwrap();
+        ask(&set, &q, d, &format!("{case} {end:?}"), &mut plans);
+        let answer = Workspace::<T, 3, 4, 6>::new().solver().solve(&set, &q, &Options::default());
+        proved += usize::from(answer.lower > T::zero());
+        let gauge = &q;
+        let by = dice.pick(&[-1.0, 1.0]) * dice.decade(-3.0, -0.5);
+        ask(&set, &Leaning { gauge, by: T::of(by) }, d, &format!("{case} {end:?} by {by}"), &mut plans);
+    }
+    assert!(plans.0[1] > 100 && proved > 100, "{plans:?} {proved}");
+}
+
+#[test]
+fn segments_from_a_corner_f64() {
+    segments_from_a_corner::<f64>(21, 40);
+    segments_from_a_corner::<f64>(22, 100_000);
+}
+
+#[test]
+fn segments_from_a_corner_f32() {
+    segments_from_a_corner::<f32>(23, 40);
+    segments_from_a_corner::<f32>(24, 1000);
 }
 
 /// A ball in a box, which it meets at the corners: d = r / |corner|. It has a core, across one of the diagonals.

@@ -80,6 +80,9 @@ impl<T: Real> Support<T, 3> for Lattice {
     fn extents(&self) -> Vector<T, 3> {
         if self.by_axis { Vector::from(self.reach().map(|x| T::of(x * 1.0001))) } else { Vector::repeat(self.extent()) }
     }
+    fn contains_origin(&self) -> bool {
+        self.points.contains(&[0; 3])
+    }
     fn error(&self) -> T {
         if let Lean::Share(_) = self.lean {
             return T::count(48) * T::ROUNDOFF * Support::<T, 3>::extent(self); // the default of sets
