@@ -464,10 +464,13 @@ static int32_t silent_vertex(void *user, uint32_t index, double *point) {
 
 /* Gauges that make no sense. */
 static void wrong_gauges(void) {
+    static uint64_t least[QDIST_WORKSPACE_WORDS_F64(3, 4, 6)]; /* in more, an expansion might not ask for vertices */
+    qdist_solver *rays = NULL;
     double value = 0;
     unsigned k;
+    CHECK(qdist_solver_init3_f64(least, sizeof least, 4, 6, &rays) == QDIST_OK);
     result.struct_size = sizeof result;
-#define GIVES(expected) CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == (expected))
+#define GIVES(expected) CHECK(qdist_solve3_f64(rays, &first.set, &gauge, NULL, &result) == (expected))
     memset(&gauge, 0, sizeof gauge);
     GIVES(QDIST_ERROR_NULL);
     gauge.value = nothing; /* the origin alone */
