@@ -15,6 +15,7 @@ lib_std := $(target)/debug/libqdist.a
 lib_mesh := $(target)/hosted/libqdist.a
 system_libs := -lpthread -ldl -lm
 out := $(target)/c
+capi := $(CARGO) rustc --quiet --locked --package qdist-capi --lib --crate-type staticlib
 version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
@@ -25,28 +26,26 @@ all: lib
 lib:
 	$(need)
 	@echo "building $(lib) (no std, release; takes about a minute)"
-	@$(CARGO) rustc --quiet --locked --lib --release --features capi,grasp,panic-handler --crate-type staticlib
+	@$(capi) --release --features grasp,panic-handler && cp $(target)/release/libqdist_capi.a $(lib)
 
 lib-std:
 	$(need)
 	@echo "building $(lib_std) (std, debug)"
-	@$(CARGO) rustc --quiet --locked --lib --features capi,grasp,c-allocator --crate-type staticlib
+	@$(capi) --features c-allocator && cp $(target)/debug/libqdist_capi.a $(lib_std)
 
 lib-mesh:
 	$(need)
 	@echo "building $(lib_mesh) (std, meshes, release; takes a minute or two)"
-	@$(CARGO) rustc --quiet --locked --lib --profile hosted --features capi,grasp,c-allocator --crate-type staticlib
+	@$(capi) --profile hosted --features c-allocator && cp $(target)/hosted/libqdist_capi.a $(lib_mesh)
 
 header:
 	$(need)
-	@echo "writing src/capi/f32/ and include/"
-	@scripts/f32.sh
+	@echo "writing include/"
 	@scripts/header.sh
 
 header-check:
 	$(need)
-	@echo "checking that src/capi/f32/ and include/ are fresh"
-	@scripts/f32.sh --check
+	@echo "checking that include/ is fresh"
 	@scripts/header.sh --check
 
 margins:

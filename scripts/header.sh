@@ -3,8 +3,9 @@
 set -eu
 cd "$(dirname "$0")/.."
 version=0.29.4
-out=$(mktemp)
-trap 'rm -f "$out" "$out.grasp" "$out.mesh" "$out.toml" "$out.warnings"' EXIT
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+out=$dir/qdist.h
 
 if ! cbindgen --version 2>/dev/null | grep -qF "cbindgen $version"; then
     echo "installing cbindgen $version" >&2
@@ -28,20 +29,24 @@ chapter() {
     grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skip(ping)? .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
+# The chapters of the other scalar, as capi/build.rs makes them.
+mkdir -p "$dir/f32/grasp"
+for file in capi/src/f64/*.rs capi/src/f64/grasp/*.rs; do sed -f capi/f32.sed "$file" >"$dir/f32/${file#capi/src/f64/}"; done
+
 # A header: what it begins with, chapters without a scalar, and chapters for both.
 header() {
     cat "$1"
-    for file in $2; do chapter cbindgen.toml "src/capi/$file.rs" ""; done
-    for file in $3; do chapter cbindgen.toml "src/capi/f64/$file.rs" ""; done
-    for file in $3; do chapter "$out.toml" "src/capi/f32/$file.rs" ", FLOAT"; done
+    for file in $2; do chapter cbindgen.toml "capi/src/$file.rs" ""; done
+    for file in $3; do chapter cbindgen.toml "capi/src/f64/$file.rs" ""; done
+    for file in $3; do chapter "$out.toml" "$dir/f32/$file.rs" ", FLOAT"; done
     printf '\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n'
 }
 
 { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-header src/capi/prelude.h "status version symmetry" "solver sets shapes points join half_space combine gauges query plane span warm" |
+header capi/src/prelude.h "status version symmetry" "solver sets shapes points join half_space combine gauges query plane span warm" |
     cat -s >"$out"
-header src/capi/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
-header src/capi/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"
+header capi/src/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
+header capi/src/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"
 
 # $1: what was written, $2: the header.
 install() {

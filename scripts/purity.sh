@@ -10,8 +10,8 @@ target=${CARGO_TARGET_DIR:-target}/purity
 cc=${CC:-cc}
 
 echo "building the library with must-not-panic"
-cargo rustc --quiet --locked --lib --release --features capi,grasp,must-not-panic --crate-type staticlib --target-dir "$target"
-lib=$target/release/libqdist.a
+cargo rustc --quiet --locked --package qdist-capi --lib --release --features grasp,must-not-panic --crate-type staticlib --target-dir "$target"
+lib=$target/release/libqdist_capi.a
 
 # Functions of the header, from its declarations after the preprocessor.
 functions=$("$cc" -E -P -Iinclude include/qdist_grasp.h | tr '\n' ' ' | tr ';' '\n' | sed -n 's/^.*[ *]\(qdist_[a-z0-9_]*\)(.*$/\1/p' | sort -u)

@@ -40,7 +40,7 @@ ignored=''
 if [ -d ../shared/data ] || [ "${CI:-}" = true ]; then ignored=--include-ignored; fi
 
 # shellcheck disable=SC2086
-run rust cargo test --locked --features std,capi -- --show-output $ignored
+run rust cargo test --locked --workspace --features std -- --show-output $ignored
 run c make --no-print-directory test-c
 run freestanding make --no-print-directory freestanding
 run purity make --no-print-directory purity

@@ -614,7 +614,8 @@ impl<T: Real> Solver<'_, T, 2> {
 }
 
 /// The answer of a body without end, which needs no solver.
-pub(crate) fn unbounded<T: Real, const N: usize>(
+#[doc(hidden)]
+pub fn unbounded<T: Real, const N: usize>(
     a: &Body<'_, T, N>,
     b: &Body<'_, T, N>,
     options: &Options<T, N>,

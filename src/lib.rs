@@ -99,8 +99,6 @@
 pub mod answer;
 pub mod batch;
 pub mod bounds;
-#[cfg(feature = "capi")]
-pub mod capi;
 pub mod depth;
 mod distance;
 #[cfg(feature = "grasp")]
@@ -108,9 +106,6 @@ pub mod grasp;
 mod meridian;
 #[cfg(feature = "mesh")]
 pub mod mesh;
-#[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
-#[path = "capi/panic.rs"]
-mod panic;
 mod plan;
 mod polytope;
 pub mod prepare;

@@ -98,7 +98,8 @@ pub fn place<T: Real, const N: usize>(
 ///
 /// # Safety
 /// `base` is valid for writes of `layout.bytes` bytes and aligned to [`Layout::ALIGN`].
-pub(crate) unsafe fn initialize<T: Real, const N: usize>(base: *mut u8, layout: &Layout) {
+#[doc(hidden)]
+pub unsafe fn initialize<T: Real, const N: usize>(base: *mut u8, layout: &Layout) {
     const { assert!(align_of::<Facet<T, N>>() <= Layout::ALIGN && align_of::<Vertex<T, N>>() <= Layout::ALIGN) };
     // SAFETY: the offsets and counts are those of the layout.
     unsafe {
@@ -121,7 +122,8 @@ pub(crate) unsafe fn initialize<T: Real, const N: usize>(base: *mut u8, layout: 
 ///
 /// # Safety
 /// The block was initialised for the same T, N and layout, and is not used otherwise for the life `'w`.
-pub(crate) unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &Layout) -> Solver<'w, T, N> {
+#[doc(hidden)]
+pub unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &Layout) -> Solver<'w, T, N> {
     use core::slice::from_raw_parts_mut;
     // SAFETY: three disjoint parts of an initialised block.
     unsafe {

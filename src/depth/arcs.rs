@@ -30,7 +30,6 @@ pub struct Turning<T: Real> {
     /// Is the set an ellipsoid, with its axes along the coordinates, and none of revolution about the last?
     pub(super) ellipsoid: bool,
     /// The function that makes this: C carries it.
-    #[cfg(feature = "capi")]
     made_by: fn() -> Self,
 }
 
@@ -51,7 +50,6 @@ impl<T: Real> Turning<T> {
                 solver.depth_with_arcs(pair, axis, calls, options, interrupt)
             },
             ellipsoid: false,
-            #[cfg(feature = "capi")]
             made_by: Self::new,
         }
     }
@@ -65,14 +63,13 @@ impl<T: Real> Turning<T> {
                 _ => solver.depth_with_ellipsoid(pair, calls, options, interrupt),
             },
             ellipsoid: true,
-            #[cfg(feature = "capi")]
             made_by: Self::ellipsoid,
         }
     }
 
     /// As a pointer that C can carry.
-    #[cfg(feature = "capi")]
-    pub(crate) fn into_raw(self) -> unsafe extern "C" fn() {
+    #[doc(hidden)]
+    pub fn into_raw(self) -> unsafe extern "C" fn() {
         // SAFETY: function pointers are alike; this one is not called before `from_raw` has turned it back.
         unsafe { core::mem::transmute::<fn() -> Self, unsafe extern "C" fn()>(self.made_by) }
     }
@@ -81,8 +78,8 @@ impl<T: Real> Turning<T> {
     ///
     /// # Safety
     /// The pointer comes from `into_raw` of the same scalar type.
-    #[cfg(feature = "capi")]
-    pub(crate) unsafe fn from_raw(raw: unsafe extern "C" fn()) -> Self {
+    #[doc(hidden)]
+    pub unsafe fn from_raw(raw: unsafe extern "C" fn()) -> Self {
         // SAFETY: the caller's promise.
         let make = unsafe { core::mem::transmute::<unsafe extern "C" fn(), fn() -> Self>(raw) };
         make()

@@ -398,7 +398,8 @@ pub fn opposed_mean<T: Real>(cones: &[PyramidalCone<'_, T>]) -> Option<Segment<T
 }
 
 /// The same of edges, wherever they are.
-pub(crate) fn opposed<'a, T: Real>(edges: impl Iterator<Item = &'a [T; 6]>) -> Option<Segment<T, 6>> {
+#[doc(hidden)]
+pub fn opposed<'a, T: Real>(edges: impl Iterator<Item = &'a [T; 6]>) -> Option<Segment<T, 6>> {
     let add = |(sum, count): (Vector<T, 6>, usize), edge: &[T; 6]| (sum + Vector::from(*edge), count + 1);
     let (sum, count) = edges.fold((Vector::zeros(), 0), add);
     Segment::new(sum / -T::count(count)).ok()

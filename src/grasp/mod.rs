@@ -127,15 +127,15 @@ mod wrench_set;
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use finger::{Finger, ForceModel, MAX_CONTACTS, UNSOLVED};
-#[cfg(feature = "capi")]
-pub(crate) use forces::check as check_forces;
+#[doc(hidden)]
+pub use forces::check as check_forces;
 pub use forces::{ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces};
 pub use frame::WrenchFrame;
 pub use gradient::{ContactGradient, Kink, Refined, Share};
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
-#[cfg(feature = "capi")]
-pub(crate) use linearized::opposed;
+#[doc(hidden)]
+pub use linearized::opposed;
 pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, opposed_mean};
 pub use primitive::Primitive;
 pub use span::Subspace;
@@ -168,6 +168,7 @@ fn ceiling<T: Real>() -> T {
 }
 
 /// All finite and not too large. NaN fails the comparison.
-pub(crate) fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
+#[doc(hidden)]
+pub fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
     numbers.all(|x| x.abs() <= ceiling())
 }

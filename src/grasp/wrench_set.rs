@@ -99,8 +99,8 @@ impl<'a, T: Real, C: Contribution<T>> WrenchSet<'a, T, C> {
     }
 
     /// A set for support calls only: it knows neither extent nor error.
-    #[cfg(feature = "capi")]
-    pub(crate) fn without_size(contributions: &'a [C], norm: Norm) -> Self {
+    #[doc(hidden)]
+    pub fn without_size(contributions: &'a [C], norm: Norm) -> Self {
         Self { contributions, norm, extent: T::zero(), error: T::zero() }
     }
 

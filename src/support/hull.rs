@@ -9,7 +9,7 @@ use crate::scalar::{Real, TwoWords, Vector, norm};
 /// A list of points that is not empty, and the search for the farthest one. Heights above a plane are products u.p; with
 /// `FAR`, u.(p - first), which is more accurate where all points are far from the origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct List<'a, T, const N: usize> {
+pub struct List<'a, T, const N: usize> {
     points: &'a [[T; N]],
     first: &'a [T; N],
 }

@@ -9,13 +9,13 @@ use crate::scalar::{Real, Vector};
 /// times in every support call. A single number lies within one store, whatever the pieces were. The load is volatile
 /// because the compiler would join it with its neighbours.
 #[inline(always)]
-pub(crate) fn alone<X: Copy>(x: &X) -> X {
+pub fn alone<X: Copy>(x: &X) -> X {
     // SAFETY: a reference is valid for a read.
     unsafe { core::ptr::read_volatile(x) }
 }
 
 /// The coordinates, each loaded [`alone`].
 #[inline(always)]
-pub(crate) fn one_by_one<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
+pub fn one_by_one<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     Vector::from(v.data.0[0].each_ref().map(alone))
 }

@@ -38,15 +38,14 @@ pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use combine::{Measured, total};
 pub(crate) use graph::{GraphWriter, SEEDS};
 pub use graph::{HullGraph, Word, graph_len, large_graph_len};
-#[cfg(feature = "capi")]
-pub(crate) use hull::List;
+#[doc(hidden)]
+pub use hull::List;
 pub use hull::{Hull, Points};
-#[cfg(feature = "capi")]
-pub(crate) use load::alone;
-pub(crate) use load::one_by_one;
+#[doc(hidden)]
+pub use load::{alone, one_by_one};
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
-#[cfg(feature = "capi")]
-pub(crate) use shapes::{check_numbers, check_sizes, near_unit};
+#[doc(hidden)]
+pub use shapes::{check_numbers, check_sizes, near_unit};
 pub use solids::{Capsule, Cone, Cylinder};
 
 /// A support function gave up; the number is the caller's own code (never zero).

@@ -78,7 +78,7 @@ pub(crate) fn largest<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
 
 /// A list of sizes is usable: each finite, not too large, >= 0.
 #[inline(always)]
-pub(crate) fn check_sizes<'a, T: Real>(sizes: impl Iterator<Item = &'a T> + Clone) -> Result<(), ShapeError> {
+pub fn check_sizes<'a, T: Real>(sizes: impl Iterator<Item = &'a T> + Clone) -> Result<(), ShapeError> {
     // NaN and infinity fail the comparisons, so there is no test for them. All are compared before the one branch.
     let usable = sizes.clone().fold(true, |all, &x| all & (x >= T::zero()) & (x <= ceiling()));
     if usable { Ok(()) } else { Err(wrong_size(sizes)) }
@@ -92,7 +92,7 @@ fn wrong_size<'a, T: Real>(sizes: impl Iterator<Item = &'a T>) -> ShapeError {
 
 /// A list of coordinates is usable: each finite and not too large.
 #[inline]
-pub(crate) fn check_numbers<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
+pub fn check_numbers<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> Result<(), ShapeError> {
     // NaN and infinity fail the comparison, so there is no test for them.
     if numbers.all(|&x| magnitude(x) <= ceiling()) { Ok(()) } else { Err(ShapeError::NonFinite) }
 }
@@ -126,9 +126,8 @@ fn rescaled_out_of_line<T: Real, const N: usize>(u: Vector<T, N>, size: T) -> Ve
 }
 
 /// A direction for points of usual sizes: `u` itself if it is not far from unit length, else a multiple that is.
-#[cfg(feature = "capi")]
 #[inline(always)]
-pub(crate) fn near_unit<T: Real, const N: usize>(u: Vector<T, N>) -> Vector<T, N> {
+pub fn near_unit<T: Real, const N: usize>(u: Vector<T, N>) -> Vector<T, N> {
     let s = u.iter().fold(-T::zero(), |s, &x| s + magnitude(x));
     let far = T::count(1 << 16);
     if s < far && s * far > T::one() { u } else { rescaled(u, T::one()) }
@@ -246,7 +245,8 @@ impl<T: Real, const N: usize> Sphere<T, N> {
 
     /// The same for a radius that has been checked before.
     #[inline(always)]
-    pub(crate) fn trusted(radius: T) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(radius: T) -> Self {
         Self { radius }
     }
 }
@@ -298,7 +298,8 @@ impl<T: Real, const N: usize> BoxShape<T, N> {
 
     /// The same for sizes that have been checked before.
     #[inline(always)]
-    pub(crate) fn trusted(half: Vector<T, N>) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(half: Vector<T, N>) -> Self {
         Self { half }
     }
 
@@ -371,7 +372,8 @@ impl<T: Real, const N: usize> Ellipsoid<T, N> {
 
     /// The same for semi axes that have been checked before. One division.
     #[inline(always)]
-    pub(crate) fn trusted(semi: Vector<T, N>) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(semi: Vector<T, N>) -> Self {
         let (most, least) = (largest(&semi), semi.iter().fold(T::HUGE, |m, &x| m.at_most(x)));
         let ball = if least > most * T::of(0.25) {
             least / most * least * (T::one() - T::count(8) * T::ROUNDOFF)

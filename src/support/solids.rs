@@ -33,7 +33,8 @@ impl<T: Real> Cylinder<T> {
 
     /// The same for sizes that have been checked before.
     #[inline(always)]
-    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(radius: T, half_height: T) -> Self {
         Self { radius, half_height }
     }
 }
@@ -96,7 +97,8 @@ impl<T: Real, const N: usize> Capsule<T, N> {
 
     /// The same for sizes that have been checked before.
     #[inline(always)]
-    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(radius: T, half_height: T) -> Self {
         Self { radius, half_height }
     }
 }
@@ -167,7 +169,8 @@ impl<T: Real> Cone<T> {
 
     /// The same for sizes that have been checked before.
     #[inline(always)]
-    pub(crate) fn trusted(radius: T, half_height: T) -> Self {
+    #[doc(hidden)]
+    pub fn trusted(radius: T, half_height: T) -> Self {
         Self { radius, half_height }
     }
 

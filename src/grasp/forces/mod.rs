@@ -7,8 +7,7 @@ mod solver;
 use crate::scalar::{Real, Vector};
 use core::fmt;
 pub use solver::ForceSolver;
-#[cfg(feature = "capi")]
-pub(crate) use solver::check;
+pub use solver::check;
 
 /// What sizes and equilibria are asked to: 1e-9 in `f64`, 1e-3 in `f32`.
 pub(super) fn precision<T: Real>() -> T {

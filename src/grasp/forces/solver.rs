@@ -296,7 +296,7 @@ fn is_better<T: Real>(a: &Forces<T>, b: &Forces<T>, external: &Vector<T, 6>) -> 
 }
 
 /// Is everything but the room for the shares as it should be?
-pub(crate) fn check<T: Real>(external: &Vector<T, 6>, options: &ForceOptions<T>) -> Result<(), ForceError> {
+pub fn check<T: Real>(external: &Vector<T, 6>, options: &ForceOptions<T>) -> Result<(), ForceError> {
     if !usable(external.iter()) {
         return Err(ForceError::Wrench);
     }

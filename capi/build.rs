@@ -1,0 +1,51 @@
+//! Makes the module `f32` of the text of `src/f64`, by the rules of `f32.sed`.
+
+use std::path::Path;
+use std::{env, fs, io};
+
+/// `s/from/to/`, for the first one in a line, or `s/from/to/g`, for all.
+struct Rule<'a> {
+    from: &'a str,
+    to: &'a str,
+    everywhere: bool,
+}
+
+impl<'a> Rule<'a> {
+    fn parse(line: &'a str) -> Option<Self> {
+        let mut parts = line.strip_prefix("s/")?.split('/');
+        let (from, to, flags) = (parts.next()?, parts.next()?, parts.next()?);
+        Some(Self { from, to, everywhere: flags == "g" })
+    }
+
+    fn apply(&self, line: &str) -> String {
+        if self.everywhere { line.replace(self.from, self.to) } else { line.replacen(self.from, self.to, 1) }
+    }
+}
+
+/// The text of a module file, with the text of its submodules in it.
+fn inlined(file: &Path, rules: &[Rule]) -> io::Result<String> {
+    println!("cargo::rerun-if-changed={}", file.display());
+    let mut text = String::new();
+    for line in fs::read_to_string(file)?.lines() {
+        let child = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';'));
+        if let Some(name) = child {
+            let folder = file.parent().unwrap_or(file);
+            let alone = folder.join(name).with_extension("rs");
+            let file = if alone.exists() { alone } else { folder.join(name).join("mod.rs") };
+            text += &format!("pub mod {name} {{\n{}}}\n", inlined(&file, rules)?);
+        } else {
+            text += &rules.iter().fold(line.to_string(), |line, rule| rule.apply(&line));
+            text.push('\n');
+        }
+    }
+    Ok(text)
+}
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-changed=f32.sed");
+    let script = fs::read_to_string("f32.sed")?;
+    let rules: Vec<Rule> = script.lines().filter_map(Rule::parse).collect();
+    let text = inlined(Path::new("src/f64/mod.rs"), &rules)?;
+    let out = env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?;
+    fs::write(Path::new(&out).join("f32.rs"), format!("pub mod f32 {{\n{text}}}\n"))
+}

@@ -1,0 +1,298 @@
+//! CONTACTS AND FINGERS
+//!
+//! A contact force f = (f1, f2, f3, f4) has components along the normal n, the tangents o and t, and a spin moment about n. Contacts become
+//! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
+//! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
+
+use super::super::super::generic::{aligned, array, clear_gaps, flag, gaps, lengths, put, shared};
+use super::super::super::grasp::{
+    QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
+};
+use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
+use qdist::grasp::{
+    ActiveForces, Contact, ContactError, Friction, GraspError, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace,
+    WrenchFrame, default_tolerance, usable,
+};
+use qdist::scalar::Vector;
+
+const _: () = assert!(MAX_JOINTS == 8);
+
+/// A contact, in one frame of your choice. Start with `= {0}`: what is zero takes its default.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_contact_f64 {
+    /// Where it touches: a length.
+    pub position: [f64; 3],
+    /// The unit normal n, into the object.
+    pub normal: [f64; 3],
+    /// The unit tangents, o and then t, with n = o x t. All zero: derived from n. They matter only to a Jacobian and to contact forces.
+    pub tangents: [f64; 6],
+    /// Tangential force per normal force.
+    pub mu: f64,
+    /// Spin moment per normal force: a length.
+    pub mus: f64,
+    /// The largest normal force; 0: 1. (A contact that is not there has no place in the list.)
+    pub force_cap: f64,
+    /// QDIST_FRICTIONLESS, QDIST_HARD or QDIST_SOFT.
+    pub friction: qdist_friction,
+    /// 1: a contact of a finger, with a Jacobian; 0: of the palm.
+    pub actuated: u32,
+    /// Joints of the finger, 0 to 8.
+    pub joints: u32,
+    /// jacobian[8 * row + joint]: what a unit of joint velocity does to the finger at the contact: its velocity along n, o and t, and its
+    /// angular velocity about n. Joint torques are J^T f. Locked joints have no column; joints that one actuator drives together share one.
+    pub jacobian: [f64; 32],
+}
+
+gaps!(qdist_contact_f64, joints..jacobian);
+
+/// Wrenches are (force, moment about `reference` / `torque_scale`).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_wrench_frame_f64 {
+    /// Usually the centre of mass.
+    pub reference: [f64; 3],
+    /// A length > 0, usually the object's radius about the reference: what makes moments comparable to forces. 1: moments as they are.
+    pub torque_scale: f64,
+}
+
+/// The wrenches of one contact at full normal force, { center + disc x : |x| <= 1 }. Plain numbers; made by the functions below.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_primitive_f64 {
+    /// Of a contact without friction the only wrench.
+    pub center: [f64; 6],
+    /// disc[6 * column + row].
+    pub disc: [f64; 18],
+    /// How far rounding may have moved each coordinate of them.
+    pub rounding: [f64; 6],
+    /// 1: the contact can exert nothing.
+    pub empty: u32,
+}
+
+gaps!(qdist_primitive_f64, empty..);
+
+/// What the joints of a finger can do about a contact.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_active_f64 {
+    /// The rank of the Jacobian, 0 to 4.
+    pub rank: u32,
+    /// 1: the joints can press within friction.
+    pub can_press: u32,
+    /// The dimension of the set of active forces with unit normal force, 0 (one force) to 3.
+    pub dimension: u32,
+    /// 1 less the square of the friction that the force in the middle needs; below 0: the joints press outside of the friction cone.
+    pub delta: f64,
+}
+
+gaps!(qdist_active_f64, dimension..delta);
+
+impl qdist_contact_f64 {
+    pub(super) fn checked(&self) -> Result<Contact<f64>, ContactError> {
+        let (mu, mus) = (self.mu, self.mus);
+        let friction = match self.friction {
+            QDIST_FRICTIONLESS => Friction::Frictionless,
+            QDIST_HARD => Friction::Hard { mu },
+            QDIST_SOFT => Friction::Soft { mu, mus },
+            _ => return Err(ContactError::Friction),
+        };
+        let contact = Contact::new(Vector::from(self.position), Vector::from(self.normal), friction)?;
+        let [a, b, c, d, e, f] = self.tangents;
+        let contact = if self.tangents == [0.0; 6] {
+            contact
+        } else {
+            contact.with_tangents(Vector::from([a, b, c]), Vector::from([d, e, f]))?
+        };
+        if self.force_cap == 0.0 { Ok(contact) } else { contact.with_force_cap(self.force_cap) }
+    }
+
+    /// The contact with its finger.
+    pub(super) fn of_hand(&self) -> Result<HandContact<f64>, ContactError> {
+        let contact = self.checked()?;
+        let jacobian = if flag(self.actuated).map_err(|_| ContactError::Jacobian)? {
+            let (rows, _) = self.jacobian.as_chunks::<8>();
+            let row =
+                |i: usize| rows.get(i).and_then(|row| row.get(..self.joints as usize)).ok_or(ContactError::Jacobian);
+            Some(Jacobian::new([row(0)?, row(1)?, row(2)?, row(3)?])?)
+        } else {
+            None
+        };
+        Ok(HandContact { contact, jacobian })
+    }
+}
+
+impl qdist_wrench_frame_f64 {
+    pub(super) fn checked(&self) -> Check<WrenchFrame<f64>> {
+        WrenchFrame::new(Vector::from(self.reference), self.torque_scale).map_err(from_contact)
+    }
+}
+
+// The library's own struct.
+const _: () = assert!(size_of::<qdist_primitive_f64>() == size_of::<Primitive<f64>>());
+const _: () = assert!(align_of::<qdist_primitive_f64>() == align_of::<Primitive<f64>>());
+
+impl qdist_primitive_f64 {
+    /// The list, with all numbers checked: finite, and as small as those of contacts.
+    pub(super) fn checked(list: &[Self]) -> Check<&[Primitive<f64>]> {
+        for primitive in list {
+            let numbers = primitive.center.iter().chain(&primitive.disc).chain(&primitive.rounding);
+            if !usable(numbers) {
+                return Err(QDIST_ERROR_CONTACT_WRENCH);
+            }
+            lengths(primitive.rounding)?;
+            flag(primitive.empty)?;
+        }
+        Ok(Self::list(list))
+    }
+
+    /// Unchecked: numbers that are none end a query.
+    pub(super) fn list(list: &[Self]) -> &[Primitive<f64>] {
+        // SAFETY: both are `repr(C)` with the same numbers in the same order, of which any bits are legal.
+        unsafe { core::slice::from_raw_parts(list.as_ptr().cast(), list.len()) }
+    }
+}
+
+/// 0 stands for the default.
+pub(super) fn tolerance(tolerance: f64) -> f64 {
+    if tolerance == 0.0 { default_tolerance() } else { tolerance }
+}
+
+/// Primitives of `count` contacts, whoever generates the forces: joints, or the structure. `primitives` has room for as many.
+///
+/// which: NULL; or after an error that is a contact's, its index is written there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_passive_primitives_f64(
+    contacts: *const qdist_contact_f64,
+    count: u32,
+    frame: *const qdist_wrench_frame_f64,
+    primitives: *mut qdist_primitive_f64,
+    which: *mut u32,
+) -> qdist_status {
+    let primitive =
+        |contact: &qdist_contact_f64, frame: &WrenchFrame<f64>| Primitive::passive(&contact.checked()?, frame);
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { collect(contacts, count, frame, primitives, which, primitive) })
+}
+
+/// Primitives of the forces that joint torques generate, for contacts of fingers; of all forces, for those of the palm.
+///
+/// rank_tolerance: decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force may be from what the
+/// joints generate. 0: 1e-9 (float: 4e-6). The other arguments as above.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_active_primitives_f64(
+    contacts: *const qdist_contact_f64,
+    count: u32,
+    frame: *const qdist_wrench_frame_f64,
+    rank_tolerance: f64,
+    primitives: *mut qdist_primitive_f64,
+    which: *mut u32,
+) -> qdist_status {
+    let primitive = |contact: &qdist_contact_f64, frame: &WrenchFrame<f64>| {
+        let HandContact { contact, jacobian } = contact.of_hand()?;
+        match jacobian {
+            Some(jacobian) => {
+                ActiveForces::new(&contact, &jacobian, frame, tolerance(rank_tolerance))?.primitive(&contact, frame)
+            }
+            None => Primitive::passive(&contact, frame),
+        }
+    };
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { collect(contacts, count, frame, primitives, which, primitive) })
+}
+
+/// # Safety
+/// What the header asks of the caller of `qdist_passive_primitives`.
+unsafe fn collect(
+    contacts: *const qdist_contact_f64,
+    count: u32,
+    frame: *const qdist_wrench_frame_f64,
+    primitives: *mut qdist_primitive_f64,
+    which: *mut u32,
+    primitive: impl Fn(&qdist_contact_f64, &WrenchFrame<f64>) -> Result<Primitive<f64>, ContactError>,
+) -> Check {
+    aligned(primitives)?;
+    if !which.is_null() {
+        aligned(which)?;
+    }
+    // SAFETY: the caller's promise.
+    let (contacts, frame) = unsafe { (array(contacts, Some(count as usize))?, shared(frame)?.checked()?) };
+    let numbered = || contacts.iter().enumerate();
+    // All are checked before the first is written.
+    for (index, contact) in numbered() {
+        if let Err(error) = primitive(contact, &frame) {
+            // SAFETY: the caller's promise.
+            return Err(unsafe { from_grasp(GraspError { contact: index, error }, which) });
+        }
+    }
+    for (index, contact) in numbered() {
+        if let Ok(made) = primitive(contact, &frame) {
+            // SAFETY: the caller's promise: room for `count`.
+            unsafe {
+                let to = primitives.add(index);
+                to.cast::<Primitive<f64>>().write(made);
+                clear_gaps(to);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_active_forces_f64(
+    contact: *const qdist_contact_f64,
+    frame: *const qdist_wrench_frame_f64,
+    rank_tolerance: f64,
+    active: *mut qdist_active_f64,
+) -> qdist_status {
+    let ask = || {
+        aligned(active)?;
+        // SAFETY: what the header asks of the caller.
+        let (contact, frame) = unsafe { (shared(contact)?, shared(frame)?.checked()?) };
+        let HandContact { contact, jacobian } = contact.of_hand().map_err(from_contact)?;
+        let jacobian = jacobian.ok_or(QDIST_ERROR_ARGUMENT)?;
+        let forces = ActiveForces::new(&contact, &jacobian, &frame, tolerance(rank_tolerance)).map_err(from_contact)?;
+        let found = qdist_active_f64 {
+            rank: forces.rank() as u32,
+            can_press: u32::from(forces.dimension().is_some()),
+            dimension: forces.dimension().unwrap_or(0) as u32,
+            delta: forces.delta().unwrap_or(-1.0),
+        };
+        // SAFETY: checked.
+        unsafe { put(active, found) };
+        Ok(())
+    };
+    status(ask())
+}
+
+/// The smallest subspace of R^6 that contains the wrenches of `count` primitives: its dimension, 0 to 6, and an orthonormal basis: coordinate k
+/// of vector j is basis[6 * j + k]. Unused vectors are 0.
+///
+/// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_wrench_subspace_f64(
+    primitives: *const qdist_primitive_f64,
+    count: u32,
+    rank_tolerance: f64,
+    dimension: *mut u32,
+    basis: *mut f64,
+) -> qdist_status {
+    let ask = || {
+        aligned(dimension)?;
+        aligned(basis)?;
+        // SAFETY: what the header asks of the caller.
+        let list = unsafe { array(primitives, Some(count as usize)) }?;
+        let found =
+            Subspace::new(qdist_primitive_f64::checked(list)?, tolerance(rank_tolerance)).map_err(from_contact)?;
+        let axes = found.basis().iter().flatten().copied();
+        for (index, x) in axes.chain(core::iter::repeat(0.0)).take(36).enumerate() {
+            // SAFETY: what the header asks of the caller: room for 36 numbers.
+            unsafe { basis.add(index).write(x) };
+        }
+        // SAFETY: checked.
+        unsafe { dimension.write(found.dimension() as u32) };
+        Ok(())
+    };
+    status(ask())
+}

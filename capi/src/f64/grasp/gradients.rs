@@ -1,0 +1,145 @@
+//! GRADIENTS
+//!
+//! How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
+//! Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why.
+
+use super::super::super::generic::{aligned, array, flag, known_size, padded, shared};
+use super::super::super::grasp::{from_contact, from_grasp, kink, qdist_kink};
+use super::super::super::status::{QDIST_ERROR_ARGUMENT, qdist_status, status};
+use super::super::gauges::{CheckedGauge, qdist_gauge_f64};
+use super::super::query::{qdist_result_f64, to_answer};
+use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
+use super::wrenches::qdist_wrenches_f64;
+use qdist::grasp::{ContactGradient, GraspError, HandContact, MAX_JOINTS, Refined};
+
+/// The weakest direction to rounding.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_refined_f64 {
+    /// sizeof(qdist_refined_f64); set it before the call.
+    pub struct_size: u32,
+    /// QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
+    pub kink: qdist_kink,
+    /// d is not more; not above that of the result. (`lower` stays as it is: only the result's bracket tells how far a deeper minimum may be.)
+    pub upper: f64,
+    /// The unit vector that proves `upper`.
+    pub direction: [f64; 6],
+}
+
+/// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_contact_gradient_f64 {
+    /// 0: there is none, and all numbers are 0: a kink, or a contact whose joints press on the very edge of its friction cone.
+    pub known: u32,
+    /// 0: not with respect to the Jacobian: there is none, or the active forces do not change smoothly with it.
+    pub jacobian_known: u32,
+    /// With respect to the position.
+    pub position: [f64; 3],
+    /// With respect to a small turn of n, o and t together, as a rotation vector.
+    pub rotation: [f64; 3],
+    /// With respect to the normal, along the unit sphere; o and t turn with it.
+    pub normal: [f64; 3],
+    /// With respect to mu and mus; 0 where the model has none.
+    pub mu: f64,
+    pub mus: f64,
+    /// With respect to the force cap.
+    pub force_cap: f64,
+    /// With respect to the entries of the Jacobian.
+    pub jacobian: [f64; 32],
+}
+
+/// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
+/// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
+/// tolerance of 1e-2 is usually enough.
+///
+/// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_grasp_gradients_f64(
+    wrenches: *const qdist_wrenches_f64,
+    contacts: *const qdist_contact_f64,
+    count: u32,
+    frame: *const qdist_wrench_frame_f64,
+    active: u32,
+    rank_tolerance: f64,
+    q: *const qdist_gauge_f64,
+    result: *const qdist_result_f64,
+    refined: *mut qdist_refined_f64,
+    gradients: *mut qdist_contact_gradient_f64,
+    which: *mut u32,
+) -> qdist_status {
+    let ask = || {
+        aligned(refined)?;
+        aligned(gradients)?;
+        if !which.is_null() {
+            aligned(which)?;
+        }
+        let active = flag(active)?;
+        // SAFETY: what the header asks of the caller.
+        let (set, contacts, frame, q, result) = unsafe {
+            known_size((&raw const (*refined).struct_size).read(), size_of::<qdist_refined_f64>())?;
+            let set = shared(wrenches)?.checked()?;
+            let contacts = array(contacts, Some(count as usize))?;
+            (set, contacts, shared(frame)?.checked()?, CheckedGauge::new::<6>(q)?, shared(result)?)
+        };
+        known_size(result.struct_size, size_of::<qdist_result_f64>())?;
+        if set.contributions().len() != contacts.len() {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let found = Refined::new(&set, q.gauge(), &to_answer(result)?);
+        let gradient = |index: usize, contact: &qdist_contact_f64| {
+            let hand = contact.of_hand()?;
+            let hand = if active { hand } else { HandContact { jacobian: None, ..hand } };
+            found.gradient(index, &hand, &frame, tolerance(rank_tolerance))
+        };
+        // All are computed before the first is written.
+        for (index, contact) in contacts.iter().enumerate() {
+            if let Err(error) = gradient(index, contact) {
+                // SAFETY: what the header asks of the caller.
+                return Err(unsafe { from_grasp(GraspError { contact: index, error }, which) });
+            }
+        }
+        for (index, contact) in contacts.iter().enumerate() {
+            let made = from_gradient(gradient(index, contact).map_err(from_contact)?.as_ref());
+            // SAFETY: what the header asks of the caller: room for `count`.
+            unsafe { gradients.add(index).write(made) };
+        }
+        let made = qdist_refined_f64 {
+            struct_size: size_of::<qdist_refined_f64>() as u32,
+            kink: kink(found.kink),
+            upper: found.answer.upper,
+            direction: padded(found.answer.direction.iter().copied()),
+        };
+        // SAFETY: checked.
+        unsafe { refined.write(made) };
+        Ok(())
+    };
+    status(ask())
+}
+
+fn from_gradient(gradient: Option<&ContactGradient<f64>>) -> qdist_contact_gradient_f64 {
+    let mut made = qdist_contact_gradient_f64 {
+        known: 0,
+        jacobian_known: 0,
+        position: [0.0; 3],
+        rotation: [0.0; 3],
+        normal: [0.0; 3],
+        mu: 0.0,
+        mus: 0.0,
+        force_cap: 0.0,
+        jacobian: [0.0; 32],
+    };
+    if let Some(gradient) = gradient {
+        made.known = 1;
+        made.position = gradient.position.into();
+        made.rotation = gradient.rotation.into();
+        made.normal = gradient.normal.into();
+        (made.mu, made.mus, made.force_cap) = (gradient.mu, gradient.mus, gradient.force_cap);
+        if let Some(rows) = &gradient.jacobian {
+            made.jacobian_known = 1;
+            let (slots, _) = made.jacobian.as_chunks_mut::<MAX_JOINTS>();
+            slots.iter_mut().zip(rows).for_each(|(slot, row)| *slot = *row);
+        }
+    }
+    made
+}

@@ -1,0 +1,127 @@
+//! QUESTIONS ABOUT GRASPS
+//!
+//! Force closure, and the best of many grasps. The depth itself, contact forces for one wrench (a segment as Q) and "is it at least so
+//! much?" (use_threshold of the options) are what qdist_solve6 answers.
+
+use super::super::super::generic::{aligned, array, gaps, known_size, padded, put, shared};
+use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
+use super::super::super::handle::{self, qdist_solver};
+use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
+use super::super::gauges::{CheckedGauge, qdist_gauge_f64};
+use super::super::query::{convert, from_answer, qdist_options_f64, qdist_result_f64};
+use super::super::sets::qdist_set_f64;
+use super::wrenches::behind;
+use qdist::grasp::Closure;
+use qdist::support::Support;
+
+/// Is a grasp force-closed?
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_closure_f64 {
+    /// sizeof(qdist_closure_f64); set it before the call.
+    pub struct_size: u32,
+    /// QDIST_CLOSURE_OPEN, QDIST_CLOSURE_CLOSED or QDIST_CLOSURE_UNDECIDED.
+    pub verdict: qdist_closure,
+    /// QDIST_CLOSURE_CLOSED: the wrench set contains the ball of this radius, which proves closure; d can be much larger. Else 0.
+    pub radius: f64,
+    /// QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w above its own rounding; the external wrench -u
+    /// is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
+    pub direction: [f64; 6],
+}
+
+/// The best of a list of sets.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_best_f64 {
+    /// sizeof(qdist_best_f64); set it before the call.
+    pub struct_size: u32,
+    /// Its place in the list, from 0.
+    pub index: u32,
+    /// No set of the list has a larger d than this.
+    pub ceiling: f64,
+    /// Its result; its struct_size, too, is set before the call.
+    pub result: qdist_result_f64,
+}
+
+gaps!(qdist_best_f64, result.callback_code..);
+
+/// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
+/// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
+/// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_force_closure_f64(
+    solver: *mut qdist_solver,
+    set: *const qdist_set_f64,
+    options: *const qdist_options_f64,
+    closure: *mut qdist_closure_f64,
+) -> qdist_status {
+    let solve = || {
+        aligned(closure)?;
+        // SAFETY: what the header asks of the caller.
+        let (list, set, mut solver, options, deadline) = unsafe {
+            let set = shared(set)?;
+            let solver = handle::open::<f64, 6>(solver)?;
+            known_size((&raw const (*closure).struct_size).read(), size_of::<qdist_closure_f64>())?;
+            let (options, deadline) = convert::<6>(options)?;
+            let checked = set.checked::<6>()?;
+            (behind(set), checked, solver, options, deadline)
+        };
+        let set: &dyn Support<f64, 6> = match &list {
+            Some(list) => list,
+            None => set,
+        };
+        let found = deadline.during(|interrupt| solver.force_closure_until(set, &options, interrupt));
+        let (verdict, radius, direction) = match found {
+            Closure::Closed { radius } => (QDIST_CLOSURE_CLOSED, radius, [0.0; 6]),
+            Closure::Open { direction } => (QDIST_CLOSURE_OPEN, 0.0, padded(direction.iter().copied())),
+            Closure::Undecided { direction } => (QDIST_CLOSURE_UNDECIDED, 0.0, padded(direction.iter().copied())),
+        };
+        let struct_size = size_of::<qdist_closure_f64>() as u32;
+        // SAFETY: checked.
+        unsafe { closure.write(qdist_closure_f64 { struct_size, verdict, radius, direction }) };
+        Ok(())
+    };
+    status(solve())
+}
+
+/// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
+/// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
+/// that they have.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_best_of6_f64(
+    solver: *mut qdist_solver,
+    sets: *const qdist_set_f64,
+    count: u32,
+    q: *const qdist_gauge_f64,
+    options: *const qdist_options_f64,
+    best: *mut qdist_best_f64,
+) -> qdist_status {
+    let solve = || {
+        aligned(best)?;
+        // SAFETY: what the header asks of the caller.
+        let (sets, mut solver, q, options, deadline) = unsafe {
+            let sets = array(sets, Some(count as usize))?;
+            let solver = handle::open::<f64, 6>(solver)?;
+            known_size((&raw const (*best).struct_size).read(), size_of::<qdist_best_f64>())?;
+            known_size((&raw const (*best).result.struct_size).read(), size_of::<qdist_result_f64>())?;
+            sets.iter().try_for_each(|set| set.checked::<6>().map(|_| ()))?;
+            let (options, deadline) = convert::<6>(options)?;
+            (sets, solver, CheckedGauge::new::<6>(q)?, options, deadline)
+        };
+        // SAFETY: all have been checked.
+        let checked = sets.iter().filter_map(|set| unsafe { set.checked::<6>() }.ok());
+        let found = deadline.during(|interrupt| solver.best_of_until(checked, q.gauge(), &options, interrupt));
+        let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
+        overflow(found.answer.failure)?;
+        let made = qdist_best_f64 {
+            struct_size: size_of::<qdist_best_f64>() as u32,
+            index: found.index as u32,
+            ceiling: found.ceiling,
+            result: from_answer(&found.answer, q.code(found.answer.failure)),
+        };
+        // SAFETY: checked.
+        unsafe { put(best, made) };
+        if found.answer.failure != 0 { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
+    };
+    status(solve())
+}

@@ -1,0 +1,232 @@
+//! WARM START
+//!
+//! For control loops. A tracker remembers the minimisers and the certified lower bound of the last tick. Where the caller knows how
+//! far the set has moved since, the old lower bound less that distance is a new one, and the old minimisers give upper bounds
+//! for one support call each. If that bracket is as narrow as the options ask for, it is the answer (QDIST_PLAN_WARM); else the solver
+//! goes on from there, within max_iterations and `interrupt`, and the result is never worse. Let the first tick converge, without a
+//! limit and to a tighter tolerance than the others: ticks are answered at once while what the moves have cost fits between the two.
+//!
+//!   qdist_tracker_init_f64(&tracker, 6);
+//!   moved = -1;
+//!   for (;;) {
+//!       ... A moves; `moved` bounds how far any of its points did ...
+//!       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
+//!   }
+
+use super::super::generic::{MAX_DIMENSION, aligned, dimension, dot, finite, first, known_size, padded, shared};
+use super::super::handle::qdist_solver;
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, overflow, qdist_status, status};
+use super::gauges::{CheckedGauge, qdist_gauge_f64};
+use super::query::{Asked, qdist_options_f64, qdist_result_f64};
+use super::sets::qdist_set_f64;
+use qdist::Tracker;
+use qdist::scalar::{Real, Vector};
+use qdist::tracker::REMEMBERED;
+
+const _: () = assert!(REMEMBERED == 4);
+
+/// What a loop remembers: plain data without addresses, for one set, one gauge and one dimension. Made by
+/// qdist_tracker_init_f64.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_tracker_f64 {
+    /// sizeof(qdist_tracker_f64).
+    pub struct_size: u32,
+    pub dimension: u32,
+    /// d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.
+    pub lower: f64,
+    /// Unit vectors, the last minimiser first; unused ones are 0.
+    pub directions: [[f64; 6]; 4],
+}
+
+/// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_tracker_init_f64(tracker: *mut qdist_tracker_f64, dimension: u32) -> qdist_status {
+    let fill = || {
+        aligned(tracker)?;
+        super::super::generic::dimension(dimension)?;
+        // SAFETY: checked.
+        unsafe { tracker.write(qdist_tracker_f64::new(dimension)) };
+        Ok(())
+    };
+    status(fill())
+}
+
+/// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
+/// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_tracker_lower_after_f64(
+    tracker: *const qdist_tracker_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    lower: *mut f64,
+) -> qdist_status {
+    let ask = || {
+        aligned(lower)?;
+        finite(&[moved])?;
+        // SAFETY: what the header asks of the caller.
+        let tracker = unsafe { shared(tracker) }?;
+        // SAFETY: what the header asks of the caller.
+        let found = match tracker.dimension {
+            2 => unsafe { tracker.lower_after::<2>(q, moved) },
+            3 => unsafe { tracker.lower_after::<3>(q, moved) },
+            4 => unsafe { tracker.lower_after::<4>(q, moved) },
+            5 => unsafe { tracker.lower_after::<5>(q, moved) },
+            6 => unsafe { tracker.lower_after::<6>(q, moved) },
+            _ => Err(QDIST_ERROR_DIMENSION),
+        }?;
+        // SAFETY: checked.
+        unsafe { lower.write(found) };
+        Ok(())
+    };
+    status(ask())
+}
+
+/// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, for the next tick of a loop, and
+/// takes note of it in the tracker. Arguments as of qdist_solve2; besides:
+///
+/// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
+/// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_solve_warm2_f64(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { solve_warm::<2>(solver, tracker, a, q, moved, options, result) })
+}
+
+/// The same in dimension 3.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_solve_warm3_f64(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { solve_warm::<3>(solver, tracker, a, q, moved, options, result) })
+}
+
+/// The same in dimension 4.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_solve_warm4_f64(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { solve_warm::<4>(solver, tracker, a, q, moved, options, result) })
+}
+
+/// The same in dimension 5.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_solve_warm5_f64(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { solve_warm::<5>(solver, tracker, a, q, moved, options, result) })
+}
+
+/// The same in dimension 6.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_solve_warm6_f64(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> qdist_status {
+    // SAFETY: what the header asks of the caller.
+    status(unsafe { solve_warm::<6>(solver, tracker, a, q, moved, options, result) })
+}
+
+impl qdist_tracker_f64 {
+    fn new(dimension: u32) -> Self {
+        Self {
+            struct_size: size_of::<Self>() as u32,
+            dimension,
+            lower: -f64::HUGE,
+            directions: [[0.0; MAX_DIMENSION]; REMEMBERED],
+        }
+    }
+
+    /// As the solver knows it. Directions are brought to unit length, which bounds rely on.
+    fn checked<const N: usize>(&self) -> Check<Tracker<f64, N>> {
+        known_size(self.struct_size, size_of::<Self>())?;
+        if dimension(self.dimension)? != N {
+            return Err(QDIST_ERROR_DIMENSION);
+        }
+        finite(&[self.lower])?;
+        let mut tracker = Tracker { lower: self.lower, ..Tracker::new() };
+        for (to, from) in tracker.directions.iter_mut().zip(&self.directions) {
+            let from = first(from, N)?;
+            finite(from)?;
+            let squared = dot(from, from);
+            if squared > 0.98 && squared < 1.02 {
+                *to = Vector::from_iterator(from.iter().copied()) / squared.root();
+            } else if !from.iter().all(|&x| x == 0.0) {
+                return Err(QDIST_ERROR_ARGUMENT);
+            }
+        }
+        Ok(tracker)
+    }
+
+    /// # Safety
+    /// What the header asks of the caller of `qdist_solve`, for `q`.
+    unsafe fn lower_after<const N: usize>(&self, q: *const qdist_gauge_f64, moved: f64) -> Check<f64> {
+        let tracker = self.checked::<N>()?;
+        // SAFETY: the caller's promise.
+        let q = unsafe { CheckedGauge::new::<N>(q) }?;
+        Ok(tracker.lower_after(moved, q.gauge()))
+    }
+}
+
+/// # Safety
+/// What the header asks of the caller of `qdist_solve_warm`.
+unsafe fn solve_warm<const N: usize>(
+    solver: *mut qdist_solver,
+    tracker: *mut qdist_tracker_f64,
+    a: *const qdist_set_f64,
+    q: *const qdist_gauge_f64,
+    moved: f64,
+    options: *const qdist_options_f64,
+    result: *mut qdist_result_f64,
+) -> Check {
+    finite(&[moved])?;
+    // SAFETY: the caller's promise.
+    let mut memory = unsafe { shared(tracker) }?.checked::<N>()?;
+    // SAFETY: the caller's promise.
+    let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
+    let Asked { solver, a, q, options, deadline, .. } = &mut asked;
+    let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.gauge(), moved, options, interrupt));
+    overflow(answer.failure)?;
+    let mut noted = qdist_tracker_f64::new(N as u32);
+    noted.lower = memory.lower;
+    for (to, from) in noted.directions.iter_mut().zip(&memory.directions) {
+        *to = padded(from.iter().copied());
+    }
+    // SAFETY: checked.
+    unsafe { tracker.write(noted) };
+    asked.conclude(&answer)
+}

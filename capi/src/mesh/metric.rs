@@ -1,0 +1,224 @@
+//! METRICS
+//!
+//! How far is one pose of A from another? A length, in each case, that depends on A's motion only.
+
+use super::super::generic::{aligned, coordinates, finite, known_size, shared};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_NONFINITE, QDIST_ERROR_NULL,
+};
+use super::model::qdist_mesh_mass;
+use super::pair::qdist_mesh_pose;
+use qdist::mesh::mass::MassProperties;
+use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Sigma};
+use qdist::mesh::optimize::Quadratic;
+use qdist::mesh::{MAX_COORDINATE, Model};
+use core::ffi::c_void;
+use qdist::nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector6};
+
+/// Which metric?
+pub type qdist_mesh_metric = u32;
+
+/// The farthest that any point of A moves (DISP).
+pub const QDIST_MESH_DISP: qdist_mesh_metric = 0;
+/// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
+/// the options. With A's own mass never more than QDIST_MESH_DISP.
+pub const QDIST_MESH_SIGMA: qdist_mesh_metric = 1;
+/// One of yours: `own` of the options.
+pub const QDIST_MESH_OWN: qdist_mesh_metric = 2;
+
+/// The distance between two poses, a length: 0 between equal poses, and proportional to A's scale. A pose for which it is negative or not finite is
+/// never an answer.
+pub type qdist_mesh_own_distance =
+    Option<unsafe extern "C" fn(user: *mut c_void, from: *const qdist_mesh_pose, to: *const qdist_mesh_pose) -> f64>;
+
+/// The square of the distance from `from` when A at `to` makes a small motion m:
+///
+///   distance(from, to)^2 + 2 gradient.m + m^T hessian m
+///
+/// with m = (v, w): the centre moves by v, and A turns about it by the rotation vector w, both in the axes of B. Write the gradient, exact, and the
+/// Hessian, positive semidefinite, row-major; it may be rough, since every step is measured by `distance`. Both are 0 before the call.
+pub type qdist_mesh_own_model = Option<
+    unsafe extern "C" fn(
+        user: *mut c_void,
+        from: *const qdist_mesh_pose,
+        to: *const qdist_mesh_pose,
+        gradient: *mut f64,
+        hessian: *mut f64,
+    ),
+>;
+
+/// A metric of yours. The bracket is true whatever the functions return, as far as `distance` does not change: with a poor model the
+/// answer is poor. They are called hundreds of times in a query, and must not unwind, longjmp, or use the pair or tracker that is calling them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_mesh_own_metric {
+    /// sizeof(qdist_mesh_own_metric).
+    pub struct_size: u32,
+    /// What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
+    /// for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.
+    pub at_least: qdist_mesh_metric,
+    /// What rotations are about, in A's frame; coordinates of at most 1e60.
+    pub centre: [f64; 3],
+    /// What makes an angle a length, e.g. A's radius of gyration; above 0.
+    pub radius: f64,
+    pub distance: qdist_mesh_own_distance,
+    pub model: qdist_mesh_own_model,
+    /// For both.
+    pub user: *mut c_void,
+}
+
+/// What was chosen, checked.
+pub(super) enum Chosen {
+    Disp,
+    Sigma,
+    Weighted(Weighted),
+    Own(Own),
+}
+
+impl Chosen {
+    /// # Safety
+    /// What `mass` and `own` point to, if not NULL and aligned, is valid; the functions of `own` may be called with its `user` for the
+    /// life of the value.
+    pub(super) unsafe fn new(
+        metric: qdist_mesh_metric,
+        mass: *const qdist_mesh_mass,
+        own: *const qdist_mesh_own_metric,
+    ) -> Check<Chosen> {
+        match metric {
+            QDIST_MESH_DISP => Ok(Chosen::Disp),
+            QDIST_MESH_SIGMA if mass.is_null() => Ok(Chosen::Sigma),
+            // SAFETY: the caller's promise.
+            QDIST_MESH_SIGMA => Weighted::new(unsafe { shared(mass) }?).map(Chosen::Weighted),
+            QDIST_MESH_OWN => {
+                aligned(own)?;
+                // SAFETY: the caller's promise; a struct of another version may be shorter, so the size is looked at first.
+                let own = unsafe {
+                    known_size((&raw const (*own).struct_size).read(), size_of::<qdist_mesh_own_metric>())?;
+                    shared(own)?
+                };
+                Own::new(own).map(Chosen::Own)
+            }
+            _ => Err(QDIST_ERROR_ARGUMENT),
+        }
+    }
+
+    pub(super) fn of<'q>(&'q self, a: &'q Model) -> Check<&'q dyn Metric> {
+        match self {
+            Chosen::Disp => Ok(a.disp()),
+            Chosen::Sigma => a.sigma().map(|sigma| sigma as _).ok_or(QDIST_ERROR_MESH_NOT_SOLID),
+            Chosen::Weighted(weighted) => Ok(weighted),
+            Chosen::Own(own) if matches!(own.certificate, Certificate::SqrtSigma) && a.sigma().is_none() => {
+                Err(QDIST_ERROR_MESH_NOT_SOLID)
+            }
+            Chosen::Own(own) => Ok(own),
+        }
+    }
+}
+
+fn centre(centre: [f64; 3]) -> Check<Point3<f64>> {
+    let proper = centre.iter().all(|x| x.abs() <= MAX_COORDINATE);
+    if proper { Ok(Point3::from(centre)) } else { Err(QDIST_ERROR_NONFINITE) }
+}
+
+/// The root mean square over a mass of the caller's. What is proved of A's own is not of this one, so it is a metric of its own, without a
+/// lower bound.
+pub(super) struct Weighted(Sigma);
+
+impl Weighted {
+    /// Wants a positive volume, and an inertia tensor as a body can have it.
+    fn new(mass: &qdist_mesh_mass) -> Check<Self> {
+        finite(&mass.inertia)?;
+        finite(&[mass.volume])?;
+        let centre = centre(mass.centre)?;
+        let inertia = Matrix3::from_row_slice(&mass.inertia);
+        let size = inertia.amax();
+        if !(mass.volume > 0.0 && (size / mass.volume).is_normal()) {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        // Mass has no negative second moments, trace / 2 - I, and here it does not lie on a line.
+        let scaled = inertia / size;
+        let principal = scaled.symmetric_eigenvalues();
+        let is_body = principal.min() > 1e-9 && 2.0 * principal.max() <= principal.sum() + 1e-9;
+        if (scaled - scaled.transpose()).amax() > 1e-9 || !is_body {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        Ok(Weighted(Sigma::new(&MassProperties { volume: mass.volume, centre, inertia })))
+    }
+}
+
+impl Metric for Weighted {
+    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        self.0.distance(from, to)
+    }
+
+    fn frame(&self) -> &BodyFrame {
+        self.0.frame()
+    }
+
+    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
+        self.0.model(from, at)
+    }
+}
+
+/// The caller's functions as a metric.
+pub(super) struct Own {
+    frame: BodyFrame,
+    certificate: Certificate,
+    distance: unsafe extern "C" fn(*mut c_void, *const qdist_mesh_pose, *const qdist_mesh_pose) -> f64,
+    model: unsafe extern "C" fn(*mut c_void, *const qdist_mesh_pose, *const qdist_mesh_pose, *mut f64, *mut f64),
+    user: *mut c_void,
+}
+
+impl Own {
+    fn new(own: &qdist_mesh_own_metric) -> Check<Own> {
+        let (Some(distance), Some(model)) = (own.distance, own.model) else { return Err(QDIST_ERROR_NULL) };
+        coordinates(&[own.radius])?;
+        let centre = centre(own.centre)?;
+        if !(own.radius > 0.0) {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let certificate = match own.at_least {
+            QDIST_MESH_DISP => Certificate::Disp,
+            QDIST_MESH_SIGMA => Certificate::SqrtSigma,
+            QDIST_MESH_OWN => Certificate::None,
+            _ => return Err(QDIST_ERROR_ARGUMENT),
+        };
+        let frame = BodyFrame { centre, axes: Matrix3::identity(), radius: own.radius };
+        Ok(Own { frame, certificate, distance, model, user: own.user })
+    }
+}
+
+impl Metric for Own {
+    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        let [from, to] = [from, to].map(qdist_mesh_pose::new);
+        // SAFETY: the promise of `Chosen::new`.
+        let value = unsafe { (self.distance)(self.user, &from, &to) };
+        // What is no distance is farther than anything.
+        if value >= 0.0 { value } else { f64::INFINITY }
+    }
+
+    fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+
+    fn frame(&self) -> &BodyFrame {
+        &self.frame
+    }
+
+    /// m = (R y_v, R y_w / radius), R being the rotation of `at`.
+    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
+        let (mut gradient, mut hessian) = ([0.0; 6], [0.0; 36]);
+        let poses = [from, at].map(qdist_mesh_pose::new);
+        // SAFETY: the promise of `Chosen::new`; the arrays have the lengths that the header says.
+        unsafe { (self.model)(self.user, &poses[0], &poses[1], gradient.as_mut_ptr(), hessian.as_mut_ptr()) };
+        let turn = at.rotation.to_rotation_matrix().into_inner();
+        let mut motion = Matrix6::zeros();
+        motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+        motion.fixed_view_mut::<3, 3>(3, 3).copy_from(&(turn / self.frame.radius));
+        Quadratic {
+            value: self.distance(from, at).powi(2),
+            gradient: motion.tr_mul(&Vector6::from(gradient)),
+            hessian: motion.tr_mul(&Matrix6::from_row_slice(&hessian)) * motion,
+        }
+    }
+}

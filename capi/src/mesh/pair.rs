@@ -1,0 +1,275 @@
+//! PAIRS
+//!
+//! Two meshes and the memory that their queries reuse. A moves, B rests. A pair serves one call at a time; make one per thread, meshes are
+//! shared.
+
+use super::super::generic::{aligned, coordinates, shared};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, QDIST_ERROR_NONFINITE, QDIST_ERROR_ROTATION, qdist_status,
+};
+use super::guard::{Exclusive, Taken, caught, guard};
+use super::model::qdist_mesh;
+use qdist::mesh::{Contact, DepthSolver, Distance, Feature, MAX_COORDINATE, Model};
+use qdist::nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
+use std::sync::Arc;
+
+/// A pair: opaque.
+pub struct qdist_mesh_pair(Exclusive<Pair>);
+
+/// What is in it.
+pub(super) struct Pair {
+    /// Before what it borrows from, so that it is dropped first.
+    solver: DepthSolver<'static>,
+    contacts: Vec<Contact>,
+    pub(super) a: Arc<Model>,
+    b: Arc<Model>,
+}
+
+/// Threads may pass pairs on and share meshes, as the header says.
+const _: () = {
+    const fn passed<T: Send>() {}
+    const fn shared<T: Send + Sync>() {}
+    passed::<qdist_mesh_pair>();
+    shared::<qdist_mesh>();
+};
+
+impl Pair {
+    fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
+        // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the solver,
+        // which nothing takes out of this struct.
+        let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
+        Pair { solver: DepthSolver::new(one, two), contacts: Vec::new(), a, b }
+    }
+
+    /// Asks the solver. A panic leaves the pair as new.
+    pub(super) fn ask<R>(&mut self, question: impl FnOnce(&mut DepthSolver<'static>) -> R) -> Check<R> {
+        let answer = caught(|| question(&mut self.solver));
+        answer.ok_or_else(|| {
+            *self = Pair::new(self.a.clone(), self.b.clone());
+            QDIST_ERROR_INTERNAL
+        })
+    }
+}
+
+/// A pair of the caller, for one call.
+///
+/// # Safety
+/// If not NULL, it is from qdist_mesh_pair_create, and not freed for the life `'a`.
+pub(super) unsafe fn exclusive<'a>(pair: *mut qdist_mesh_pair) -> Check<Taken<'a, Pair>> {
+    // SAFETY: the caller's promise.
+    unsafe { shared(pair.cast_const()) }?.0.take()
+}
+
+/// Where A is, in the frame of B: x_B = R x_A + t.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_mesh_pose {
+    /// The rotation R as a quaternion (w, x, y, z) of unit length, to 1e-6; it is normalised.
+    pub rotation: [f64; 4],
+    /// t, coordinates of at most 1e60.
+    pub translation: [f64; 3],
+}
+
+impl qdist_mesh_pose {
+    /// The pose, checked.
+    pub(super) fn checked(&self) -> Check<Isometry3<f64>> {
+        let [w, i, j, k] = self.rotation;
+        coordinates(&self.rotation)?;
+        if !self.translation.iter().all(|x| x.abs() <= MAX_COORDINATE) {
+            return Err(QDIST_ERROR_NONFINITE);
+        }
+        let quaternion = Quaternion::new(w, i, j, k);
+        if !((quaternion.norm() - 1.0).abs() <= 1e-6) {
+            return Err(QDIST_ERROR_ROTATION);
+        }
+        Ok(Isometry3::from_parts(Translation3::from(self.translation), UnitQuaternion::new_normalize(quaternion)))
+    }
+
+    pub(super) fn new(pose: &Isometry3<f64>) -> Self {
+        let q = pose.rotation.quaternion();
+        qdist_mesh_pose { rotation: [q.w, q.i, q.j, q.k], translation: pose.translation.vector.into() }
+    }
+}
+
+/// What of a mesh touches or is nearest?
+pub type qdist_mesh_feature = u32;
+
+/// A vertex; index: its place in your array.
+pub const QDIST_MESH_VERTEX: qdist_mesh_feature = 0;
+/// An edge; index: a number of the library's own, the same at every call.
+pub const QDIST_MESH_EDGE: qdist_mesh_feature = 1;
+/// A triangle; index: its place in your array.
+pub const QDIST_MESH_FACE: qdist_mesh_feature = 2;
+
+fn feature(feature: Feature) -> (qdist_mesh_feature, u32) {
+    match feature {
+        Feature::Vertex(i) => (QDIST_MESH_VERTEX, i),
+        Feature::Edge(i) => (QDIST_MESH_EDGE, i),
+        Feature::Face(i) => (QDIST_MESH_FACE, i),
+    }
+}
+
+fn xyz(point: &Point3<f64>) -> [f64; 3] {
+    point.coords.into()
+}
+
+/// Nearest points of two surfaces, in the frame of B.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_mesh_distance {
+    /// 0 where the surfaces meet.
+    pub distance: f64,
+    /// A point of A.
+    pub on_a: [f64; 3],
+    /// A point of B.
+    pub on_b: [f64; 3],
+    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    pub feature_a: qdist_mesh_feature,
+    pub index_a: u32,
+    /// Where on B.
+    pub feature_b: qdist_mesh_feature,
+    pub index_b: u32,
+}
+
+impl qdist_mesh_distance {
+    pub(super) fn new(found: &Distance) -> Self {
+        let ((feature_a, index_a), (feature_b, index_b)) = (feature(found.feature_a), feature(found.feature_b));
+        let (on_a, on_b) = (xyz(&found.on_a), xyz(&found.on_b));
+        qdist_mesh_distance { distance: found.distance, on_a, on_b, feature_a, index_a, feature_b, index_b }
+    }
+}
+
+/// Two features at a local minimum of their distance, in the frame of B.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_mesh_contact {
+    /// Distance of the points, at least 0.
+    pub gap: f64,
+    /// A point of A.
+    pub on_a: [f64; 3],
+    /// A point of B.
+    pub on_b: [f64; 3],
+    /// Unit direction from B to A.
+    pub normal: [f64; 3],
+    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    pub feature_a: qdist_mesh_feature,
+    pub index_a: u32,
+    /// Where on B.
+    pub feature_b: qdist_mesh_feature,
+    pub index_b: u32,
+}
+
+impl qdist_mesh_contact {
+    fn new(found: &Contact) -> Self {
+        let ((feature_a, index_a), (feature_b, index_b)) = (feature(found.feature_a), feature(found.feature_b));
+        let (on_a, on_b, normal) = (xyz(&found.on_a), xyz(&found.on_b), found.normal.into());
+        qdist_mesh_contact { gap: found.gap, on_a, on_b, normal, feature_a, index_a, feature_b, index_b }
+    }
+}
+
+/// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_pair_create(
+    a: *const qdist_mesh,
+    b: *const qdist_mesh,
+    pair: *mut *mut qdist_mesh_pair,
+) -> qdist_status {
+    guard(|| {
+        aligned(pair)?;
+        // SAFETY: what the header asks of the caller.
+        let (a, b) = unsafe { (shared(a)?, shared(b)?) };
+        let made = Box::new(qdist_mesh_pair(Exclusive::new(Pair::new(a.model.clone(), b.model.clone()))));
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { pair.write(Box::into_raw(made)) };
+        Ok(())
+    })
+}
+
+/// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_pair_free(pair: *mut qdist_mesh_pair) {
+    // SAFETY: what the header asks of the caller.
+    if !pair.is_null() && unsafe { exclusive(pair) }.is_ok() {
+        // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
+        drop(unsafe { Box::from_raw(pair) });
+    }
+}
+
+/// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
+/// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_pair_collides(
+    pair: *mut qdist_mesh_pair,
+    pose: *const qdist_mesh_pose,
+    collides: *mut u32,
+) -> qdist_status {
+    guard(|| {
+        aligned(collides)?;
+        // SAFETY: what the header asks of the caller.
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let found = pair.ask(|solver| solver.pair().collides(&pose))?;
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { collides.write(found.into()) };
+        Ok(())
+    })
+}
+
+/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
+/// microseconds (`make figures`), and less where the pose has changed little.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_pair_distance(
+    pair: *mut qdist_mesh_pair,
+    pose: *const qdist_mesh_pose,
+    distance: *mut qdist_mesh_distance,
+) -> qdist_status {
+    guard(|| {
+        aligned(distance)?;
+        // SAFETY: what the header asks of the caller.
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let found = pair.ask(|solver| solver.pair().distance(&pose))?;
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { distance.write(qdist_mesh_distance::new(&found)) };
+        Ok(())
+    })
+}
+
+/// Contacts with a gap of at most `margin`, in the order of their features, each pair of features once: only local minima of the distance,
+/// through which the bodies will touch when they move a little. Parallel faces and edges touch along an area; its corners are the contacts.
+/// For a pose that does not collide; otherwise features that have passed through each other are still found.
+///
+/// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
+/// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_pair_contacts(
+    pair: *mut qdist_mesh_pair,
+    pose: *const qdist_mesh_pose,
+    margin: f64,
+    contacts: *mut qdist_mesh_contact,
+    capacity: u32,
+    count: *mut u32,
+) -> qdist_status {
+    guard(|| {
+        aligned(count)?;
+        if capacity > 0 {
+            aligned(contacts)?;
+        }
+        // SAFETY: what the header asks of the caller.
+        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        if !margin.is_finite() {
+            return Err(QDIST_ERROR_NONFINITE);
+        }
+        if margin < 0.0 {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let mut found = core::mem::take(&mut pair.contacts);
+        pair.ask(|solver| solver.pair().contacts(&pose, margin, &mut found))?;
+        for (place, contact) in found.iter().take(capacity as usize).enumerate() {
+            // SAFETY: checked, and the caller's array has room for `capacity` contacts.
+            unsafe { contacts.add(place).write(qdist_mesh_contact::new(contact)) };
+        }
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { count.write(found.len() as u32) };
+        pair.contacts = found;
+        Ok(())
+    })
+}

@@ -1,0 +1,283 @@
+//! TRACKER
+//!
+//! The depth of a body that moves a little from tick to tick, in a loop of 1 kHz: free poses are remembered, and a tick makes the best of
+//! them better, within a budget. It never waits, and knows no clock but yours: `late` of the budget is asked before every query, and no query
+//! begins once it says so. What has begun is finished: some microseconds, at most a certificate (0.1 to 1 ms).
+//!
+//!   qdist_mesh_tracker_create(tool, part, &tracker);
+//!   qdist_mesh_budget_default(&budget);
+//!   budget.late = my_clock_says_late, budget.late_user = &my_clock;
+//!   depth.struct_size = sizeof depth;
+//!   for (;;) {
+//!       if (... another thread's qdist_mesh_pair_depth has a new answer ...) qdist_mesh_tracker_merge(tracker, &answer, NULL);
+//!       qdist_mesh_tracker_update(tracker, &pose, &budget, &depth);
+//!       ... a spring from `pose` to `depth.pose` ...
+//!   }
+//!
+//! It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
+//! qdist_mesh_pair_contacts of another pair of the same meshes.
+
+use super::super::generic::{aligned, finite, flag, gaps, known_size, put, shared};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, qdist_status, status};
+use super::depth::{QDIST_MESH_FAST, effort, qdist_mesh_depth, qdist_mesh_effort};
+use super::guard::{Exclusive, Taken, caught, guard};
+use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
+use super::model::{qdist_mesh, qdist_mesh_mass};
+use super::pair::qdist_mesh_pose;
+use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
+use core::ffi::c_void;
+use core::ptr::{null, null_mut};
+use std::sync::Arc;
+
+/// A tracker: opaque.
+pub struct qdist_mesh_tracker(Exclusive<Tracker>);
+
+/// What is in it.
+struct Tracker {
+    /// Before what it borrows from, so that it is dropped first.
+    tracker: DepthTracker<'static>,
+    a: Arc<Model>,
+    b: Arc<Model>,
+}
+
+/// Threads may pass trackers on, as the header says.
+const _: () = {
+    const fn passed<T: Send>() {}
+    passed::<qdist_mesh_tracker>();
+};
+
+impl Tracker {
+    fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
+        // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the tracker,
+        // which nothing takes out of this struct.
+        let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
+        Tracker { tracker: DepthTracker::new(one, two), a, b }
+    }
+
+    /// Asks the tracker. A panic leaves it as new.
+    fn ask<R>(&mut self, question: impl FnOnce(&mut DepthTracker<'static>) -> R) -> Check<R> {
+        let answer = caught(|| question(&mut self.tracker));
+        answer.ok_or_else(|| {
+            *self = Tracker::new(self.a.clone(), self.b.clone());
+            QDIST_ERROR_INTERNAL
+        })
+    }
+}
+
+/// A tracker of the caller, for one call.
+///
+/// # Safety
+/// If not NULL, it is from qdist_mesh_tracker_create, and not freed for the life `'a`.
+unsafe fn exclusive<'a>(tracker: *mut qdist_mesh_tracker) -> Check<Taken<'a, Tracker>> {
+    // SAFETY: the caller's promise.
+    unsafe { shared(tracker.cast_const()) }?.0.take()
+}
+
+/// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
+/// cancel, at a flag that another thread sets (atomically).
+///
+/// user: late_user of the budget.
+pub type qdist_mesh_late = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
+
+/// What a tick may cost, and by which metric it measures. Begin with qdist_mesh_budget_default.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct qdist_mesh_budget {
+    /// sizeof(qdist_mesh_budget).
+    pub struct_size: u32,
+    /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
+    pub metric: qdist_mesh_metric,
+    /// Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, up to 6 more.
+    pub max_queries: u64,
+    /// The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
+    pub relative: f64,
+    /// Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
+    pub probes: u32,
+    /// 1 (default): lower bounds are renewed when there is none or a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
+    pub certify: u32,
+    /// With how much effort; default QDIST_MESH_FAST.
+    pub effort: qdist_mesh_effort,
+    /// QDIST_MESH_SIGMA: as `mass` of qdist_mesh_options. NULL (default): A's own.
+    pub mass: *const qdist_mesh_mass,
+    /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    pub own: *const qdist_mesh_own_metric,
+    /// NULL (default): there is no clock.
+    pub late: qdist_mesh_late,
+    /// For `late`.
+    pub late_user: *mut c_void,
+}
+
+gaps!(qdist_mesh_budget, effort..mass, late_user..);
+
+/// Writes the defaults, struct_size included.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_budget_default(budget: *mut qdist_mesh_budget) -> qdist_status {
+    let write = || {
+        aligned(budget)?;
+        let usual = Budget::default();
+        let made = qdist_mesh_budget {
+            struct_size: size_of::<qdist_mesh_budget>() as u32,
+            metric: QDIST_MESH_DISP,
+            max_queries: usual.max_queries,
+            relative: usual.relative,
+            probes: usual.probes,
+            certify: usual.certificate.is_some().into(),
+            effort: QDIST_MESH_FAST,
+            mass: null(),
+            own: null(),
+            late: None,
+            late_user: null_mut(),
+        };
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { put(budget, made) };
+        Ok(())
+    };
+    status(write())
+}
+
+/// The caller's budget, checked.
+struct Tick {
+    metric: Chosen,
+    budget: Budget,
+    late: qdist_mesh_late,
+    user: *mut c_void,
+}
+
+impl Tick {
+    /// # Safety
+    /// If not NULL and aligned, `budget` and what it points to are valid for the life of the value.
+    unsafe fn new(budget: *const qdist_mesh_budget) -> Check<Tick> {
+        if budget.is_null() {
+            return Ok(Tick { metric: Chosen::Disp, budget: Budget::default(), late: None, user: null_mut() });
+        }
+        aligned(budget)?;
+        // SAFETY: the caller's promise; a struct of another version may be shorter, so the size is looked at first.
+        let (budget, metric) = unsafe {
+            known_size((&raw const (*budget).struct_size).read(), size_of::<qdist_mesh_budget>())?;
+            let budget = shared(budget)?;
+            (budget, Chosen::new(budget.metric, budget.mass, budget.own)?)
+        };
+        finite(&[budget.relative])?;
+        if budget.relative < 0.0 {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let effort = effort(budget.effort)?;
+        let limits = Budget {
+            max_queries: budget.max_queries,
+            relative: budget.relative,
+            probes: budget.probes,
+            certificate: flag(budget.certify)?.then_some(effort),
+        };
+        Ok(Tick { metric, budget: limits, late: budget.late, user: budget.late_user })
+    }
+}
+
+/// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_tracker_create(
+    a: *const qdist_mesh,
+    b: *const qdist_mesh,
+    tracker: *mut *mut qdist_mesh_tracker,
+) -> qdist_status {
+    guard(|| {
+        aligned(tracker)?;
+        // SAFETY: what the header asks of the caller.
+        let (a, b) = unsafe { (shared(a)?, shared(b)?) };
+        let made = Box::new(qdist_mesh_tracker(Exclusive::new(Tracker::new(a.model.clone(), b.model.clone()))));
+        // SAFETY: checked, and what the header asks of the caller.
+        unsafe { tracker.write(Box::into_raw(made)) };
+        Ok(())
+    })
+}
+
+/// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_tracker_free(tracker: *mut qdist_mesh_tracker) {
+    // SAFETY: what the header asks of the caller.
+    if !tracker.is_null() && unsafe { exclusive(tracker) }.is_ok() {
+        // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
+        drop(unsafe { Box::from_raw(tracker) });
+    }
+}
+
+/// A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
+/// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
+/// error the tracker is as before.
+/// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_tracker_update(
+    tracker: *mut qdist_mesh_tracker,
+    pose: *const qdist_mesh_pose,
+    budget: *const qdist_mesh_budget,
+    depth: *mut qdist_mesh_depth,
+) -> qdist_status {
+    guard(|| {
+        aligned(depth)?;
+        // SAFETY: what the header asks of the caller.
+        let (mut tracker, pose, tick) = unsafe {
+            known_size((&raw const (*depth).struct_size).read(), size_of::<qdist_mesh_depth>())?;
+            (exclusive(tracker)?, shared(pose)?.checked()?, Tick::new(budget)?)
+        };
+        let model = tracker.a.clone();
+        let metric = tick.metric.of(&model)?;
+        let found = tracker.ask(|tracker| {
+            // SAFETY: the promise of `Tick::new`.
+            let late = || tick.late.is_some_and(|late| unsafe { late(tick.user) } != 0);
+            let clock = tick.late.is_some().then_some(&late as &dyn Fn() -> bool);
+            tracker.update(&pose, metric, &tick.budget, clock)
+        })?;
+        // SAFETY: checked.
+        unsafe { depth.write(qdist_mesh_depth::new(&found)) };
+        Ok(())
+    })
+}
+
+/// Takes over the pose of an answer from elsewhere, whatever pose it was the answer for: qdist_mesh_pair_depth of another thread, say. Only
+/// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
+///
+/// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_tracker_merge(
+    tracker: *mut qdist_mesh_tracker,
+    answer: *const qdist_mesh_depth,
+    taken: *mut u32,
+) -> qdist_status {
+    guard(|| {
+        aligned(answer)?;
+        if !taken.is_null() {
+            aligned(taken)?;
+        }
+        // SAFETY: what the header asks of the caller.
+        let (mut tracker, pose) = unsafe {
+            known_size((&raw const (*answer).struct_size).read(), size_of::<qdist_mesh_depth>())?;
+            (exclusive(tracker)?, shared(answer)?.pose.checked()?)
+        };
+        // The tracker tests the pose, and believes nothing else.
+        let answer = MeshDepth {
+            outcome: Outcome::Bounded,
+            lower: 0.0,
+            upper: f64::MAX,
+            pose,
+            distance: None,
+            solid: false,
+            counters: Counters::default(),
+            walks: 0,
+        };
+        let free = tracker.ask(|tracker| tracker.merge(&answer))?;
+        if !taken.is_null() {
+            // SAFETY: checked, and what the header asks of the caller.
+            unsafe { taken.write(free.into()) };
+        }
+        Ok(())
+    })
+}
+
+/// Forgets everything: the next tick is the first.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn qdist_mesh_tracker_reset(tracker: *mut qdist_mesh_tracker) -> qdist_status {
+    guard(|| {
+        // SAFETY: what the header asks of the caller.
+        let mut tracker = unsafe { exclusive(tracker) }?;
+        tracker.ask(DepthTracker::reset)
+    })
+}
