@@ -1,6 +1,6 @@
 //! Prints the table of workspace sizes in README.md: `cargo run --example memory`.
 
-use qdist::workspace::Layout;
+use qdist::Layout;
 
 fn row<const N: usize>(vertices: usize, facets: usize) {
     let f32_bytes = Layout::new::<f32, N>(vertices, facets).map(|l| l.bytes());

@@ -72,7 +72,8 @@
 //!
 //! A ball term r of A is added to both sides (Euclidean Q only; there h(core + rB) = h(core) + r |n|).
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 
 /// A bracket of d_Q(A), in units of Q; negative values are minus a Euclidean distance.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -96,44 +96,49 @@
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![warn(missing_docs)]
 
-pub mod answer;
-pub mod batch;
-pub mod bounds;
-pub mod depth;
-mod distance;
+mod bounds;
 #[cfg(feature = "grasp")]
 pub mod grasp;
-mod meridian;
+mod math;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 mod plan;
 mod polytope;
-pub mod prepare;
 pub mod qset;
 mod query;
-pub mod scalar;
-mod second_look;
-mod sectors;
-pub mod simplex;
-pub mod solver;
-mod span;
-mod start;
+mod scalar;
+mod solver;
 pub mod support;
-pub mod tracker;
-pub mod workspace;
 
 /// The linear algebra in this crate's signatures.
 pub use nalgebra;
 
-pub use answer::{Answer, Outcome, Plan};
-pub use batch::Best;
-pub use depth::{Body, BodyError, Depth};
+pub use math::{TwoWords, Vector};
+pub use polytope::simplex::{Corner, Simplex, Vertex};
 pub use query::Options;
-pub use scalar::{Real, Vector};
-pub use simplex::Vertex;
+pub use query::answer::{Answer, Outcome, Plan};
+pub use scalar::Real;
 pub use solver::Solver;
-pub use tracker::Tracker;
-pub use workspace::Workspace;
+pub use solver::batch::Best;
+pub use solver::depth::{Body, BodyError, Depth, Matrix2, Matrix3};
+pub use solver::prepare::{GraphError, HullFacet, hull_facets, prepare_hull};
+pub use solver::warm::Tracker;
+pub use solver::workspace::{Layout, MAX_CAPACITY, Workspace, WorkspaceError, place};
+
+/// What the C layer and the tests of this repository stand on beside the interface. No part of it: anything here may change.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::bounds::{Axes, Bounds};
+    #[cfg(feature = "grasp")]
+    pub use crate::grasp::{forces::check as check_forces, linearized::opposed, numbers::usable};
+    pub use crate::math::norm;
+    pub use crate::solver::depth::unbounded;
+    pub use crate::solver::warm::REMEMBERED;
+    pub use crate::solver::workspace::{initialize, open};
+    pub use crate::support::hull::List;
+    pub use crate::support::load::{alone, one_by_one};
+    pub use crate::support::shapes::{check_numbers, check_sizes, near_unit};
+}
 
 /// Failure code: a callback returned a value that is not finite.
 pub const NOT_FINITE: i32 = i32::MIN;

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::error::Error;
 
+use qdist::GraphError;
+use qdist::WorkspaceError;
 use qdist::nalgebra::Matrix3;
-use qdist::prepare::GraphError;
 use qdist::support::{BoxShape, Cylinder, Failure, Points, ShapeError};
-use qdist::workspace::WorkspaceError;
 use qdist::{Body, BodyError, NOT_FINITE, Options, Vector, Workspace};
 
 /// README's first example and a pose, in a function that a program would have.

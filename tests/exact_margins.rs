@@ -10,7 +10,7 @@ use common::lattice::{
     Lattice, Lean, Leaning, Point, ball, cuboid, exact, moved, planes, slab, symmetric, truth, truth_in_plane,
 };
 use nalgebra::Matrix3;
-use qdist::bounds::{Axes, Bounds};
+use qdist::internal::{Axes, Bounds};
 use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment, Vertices};
 use qdist::{Answer, Options, Outcome, Plan, Real, Tracker, Vector, Workspace};
 

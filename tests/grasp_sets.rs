@@ -9,8 +9,8 @@ use common::dice::Dice;
 use grasp_common::{contact_map, direction, radii, random_contact, value, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, ContactError, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+use qdist::internal::norm as norm_of;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, Gauge, Segment};
-use qdist::scalar::norm as norm_of;
 use qdist::support::Support;
 use qdist::{Options, Real, Vector, Workspace};
 

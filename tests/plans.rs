@@ -9,8 +9,8 @@ use common::memory::{Memory, Seen, broken_promise};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Support};
-use qdist::workspace::{Layout, WorkspaceError, place};
 use qdist::{Answer, Options, Outcome, Plan, Real, Vector};
+use qdist::{Layout, WorkspaceError, place};
 use std::cell::Cell;
 
 type Matrix<const N: usize> = SMatrix<f64, N, N>;

@@ -29,7 +29,7 @@ mod scan_and_match;
 use cases::Case;
 use methods::{Method, Tolerance};
 use nalgebra::{Const, DimMin};
-use qdist::workspace::MAX_CAPACITY;
+use qdist::MAX_CAPACITY;
 use qdist::{Outcome, Real};
 use report::Row;
 use scan_and_match::Matching;

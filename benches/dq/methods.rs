@@ -4,7 +4,7 @@ use crate::cases::Case;
 use crate::report::Row;
 use crate::scan_and_match::{self, Matching};
 use nalgebra::{Const, DimMin};
-use qdist::workspace::{Layout, MAX_CAPACITY, place};
+use qdist::{Layout, MAX_CAPACITY, place};
 use qdist::{Options, Outcome, Real};
 use std::hint::black_box;
 use std::mem::MaybeUninit;

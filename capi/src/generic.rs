@@ -7,12 +7,14 @@ use super::status::{
     QDIST_ERROR_STRUCT_SIZE, from_shape,
 };
 use super::symmetry::qdist_mirrored;
-use qdist::NOT_FINITE;
-use qdist::qset::Gauge;
-use qdist::scalar::{Real, Vector, norm};
-use qdist::support::{Failure, check_numbers, check_sizes, one_by_one};
 use core::cell::Cell;
 use core::ffi::c_void;
+use qdist::NOT_FINITE;
+use qdist::internal::norm;
+use qdist::internal::{check_numbers, check_sizes, one_by_one};
+use qdist::qset::Gauge;
+use qdist::support::Failure;
+use qdist::{Real, Vector};
 
 /// The largest dimension.
 pub const MAX_DIMENSION: usize = 6;

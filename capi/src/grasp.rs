@@ -8,8 +8,8 @@ use super::status::{
     QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_NONFINITE,
     QDIST_ERROR_TOLERANCE, QDIST_ERROR_TORQUE_LIMIT, qdist_status,
 };
-use qdist::grasp::{ContactError, ForceError, ForceModel, ForceOutcome, GraspError, Kink, Norm};
 use core::ffi::c_char;
+use qdist::grasp::{ContactError, ForceError, ForceModel, ForceOutcome, GraspError, Kink, Norm};
 
 /// The friction of a contact.
 pub type qdist_friction = u32;

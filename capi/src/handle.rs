@@ -9,11 +9,12 @@ use super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_BUSY, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
     QDIST_ERROR_WORKSPACE_SIZE, from_workspace,
 };
-use qdist::scalar::Real;
-use qdist::solver::Solver;
-use qdist::workspace::{self, Layout};
 use core::ffi::c_void;
 use core::ops::{Deref, DerefMut};
+use qdist::Layout;
+use qdist::Real;
+use qdist::Solver;
+use qdist::internal;
 
 /// A solver: opaque, in the caller's memory.
 #[repr(C, align(8))]
@@ -95,7 +96,7 @@ pub(super) unsafe fn init<T: Real, const N: usize>(
     let scalar = size_of::<T>() as u16;
     // SAFETY: aligned, and long enough for header and block.
     unsafe {
-        workspace::initialize::<T, N>(memory.cast::<u8>().add(HEADER), &layout);
+        internal::initialize::<T, N>(memory.cast::<u8>().add(HEADER), &layout);
         handle.write(qdist_solver { magic: MAGIC, scalar, dimension: N as u16, max_vertices, max_facets });
         solver.write(handle);
     }
@@ -157,6 +158,6 @@ pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver
     // SAFETY: the header says that `init` wrote a block of this layout behind it.
     unsafe {
         (&raw mut (*solver).magic).write(BUSY);
-        Ok(Opened { solver: workspace::open(solver.cast::<u8>().add(HEADER), &layout), header: solver })
+        Ok(Opened { solver: internal::open(solver.cast::<u8>().add(HEADER), &layout), header: solver })
     }
 }

@@ -20,9 +20,10 @@
 //! ends the query.
 
 use crate::Outcome;
+use crate::math::{Accumulator, Vector, norm, unit};
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::scalar::{Accumulator, Real, Vector, norm, unit};
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Support};
 

@@ -2,8 +2,9 @@
 
 use core::fmt;
 
-use super::usable;
-use crate::scalar::{Real, Vector, unit};
+use super::numbers::usable;
+use crate::math::{Vector, unit};
+use crate::scalar::Real;
 
 /// Why a contact, or what belongs to it, is refused. In a list of contacts [`GraspError`] says which one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

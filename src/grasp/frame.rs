@@ -3,8 +3,9 @@
 use nalgebra::SMatrix;
 
 use super::contact::{Contact, ContactError};
-use super::{ceiling, usable};
-use crate::scalar::{Real, Vector, norm};
+use super::numbers::{ceiling, usable};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 
 /// Reference point and torque scale of wrenches: a wrench is (force, moment about `reference` / `torque_scale`).
 ///

@@ -7,7 +7,8 @@ use super::frame::WrenchFrame;
 use super::jacobian::Jacobian;
 use super::primitive::Primitive;
 use super::svd::{Svd, dot};
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 
 /// The active forces of a contact, U^a = U ∩ range(J): { center + disc x : |x| <= 1 } in R^4, for unit normal force
 /// (paper, eq. 10-15).

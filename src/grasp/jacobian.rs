@@ -1,8 +1,8 @@
 //! How the joints of a finger move a contact.
 
 use super::contact::ContactError;
+use super::numbers::{check_tolerance, usable};
 use super::svd::{Svd, dot};
-use super::{check_tolerance, usable};
 use crate::scalar::Real;
 
 /// The largest number of joints of a finger.

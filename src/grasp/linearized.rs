@@ -36,11 +36,12 @@
 
 use super::contact::{Contact, ContactError, Friction, GraspError};
 use super::frame::WrenchFrame;
+use super::numbers::usable;
 use super::primitive::frobenius;
-use super::usable;
 use super::wrench_set::{Contribution, Norm};
+use crate::math::{Vector, norm, unit};
 use crate::qset::Segment;
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::scalar::Real;
 use crate::support::{Failure, Points, Support};
 
 /// Where the edges of a pyramid are, in units of the cone: x on the unit circle for hard contacts, on the unit sphere for soft ones, for

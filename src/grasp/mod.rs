@@ -113,12 +113,13 @@
 mod closure;
 mod contact;
 mod finger;
-mod forces;
+pub(crate) mod forces;
 mod frame;
 mod gradient;
 mod hand;
 mod jacobian;
 pub mod linearized;
+pub(crate) mod numbers;
 mod primitive;
 mod span;
 mod svd;
@@ -127,48 +128,13 @@ mod wrench_set;
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
 pub use finger::{Finger, ForceModel, MAX_CONTACTS, UNSOLVED};
-#[doc(hidden)]
-pub use forces::check as check_forces;
 pub use forces::{ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces};
 pub use frame::WrenchFrame;
 pub use gradient::{ContactGradient, Kink, Refined, Share};
 pub use hand::{ActiveForces, HandContact, active_wrenches, wrenches};
 pub use jacobian::{Jacobian, MAX_JOINTS};
-#[doc(hidden)]
-pub use linearized::opposed;
 pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, opposed_mean};
+pub use numbers::default_tolerance;
 pub use primitive::Primitive;
 pub use span::Subspace;
 pub use wrench_set::{Contribution, Norm, WrenchSet};
-
-use crate::scalar::Real;
-
-/// The default relative tolerance of ranks: 1e-9 in `f64`. In `f32`, where the entries of a Jacobian are known to 6e-8 at
-/// best, 64 roundoffs, 3.8e-6.
-///
-/// ```
-/// assert_eq!(qdist::grasp::default_tolerance::<f64>(), 1e-9);
-/// ```
-pub fn default_tolerance<T: Real>() -> T {
-    T::of(1e-9).at_least(T::count(64) * T::ROUNDOFF)
-}
-
-/// A rank tolerance is between 16 roundoffs, what the arithmetic can tell apart, and 1/2.
-fn check_tolerance<T: Real>(tolerance: T) -> Result<(), ContactError> {
-    if tolerance >= T::count(16) * T::ROUNDOFF && tolerance <= T::of(0.5) {
-        Ok(())
-    } else {
-        Err(ContactError::Tolerance)
-    }
-}
-
-/// The largest number that is accepted: products of two are far from overflow. 4.5e15 in `f32`, 1.4e146 in `f64`.
-fn ceiling<T: Real>() -> T {
-    (T::HUGE * T::ROUNDOFF).root()
-}
-
-/// All finite and not too large. NaN fails the comparison.
-#[doc(hidden)]
-pub fn usable<'a, T: Real>(mut numbers: impl Iterator<Item = &'a T>) -> bool {
-    numbers.all(|x| x.abs() <= ceiling())
-}

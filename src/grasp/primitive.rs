@@ -4,10 +4,11 @@ use nalgebra::SMatrix;
 
 use super::contact::{Contact, ContactError};
 use super::frame::WrenchFrame;
+use super::numbers::usable;
 use super::svd::dot;
-use super::usable;
 use super::wrench_set::Contribution;
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::math::{Vector, norm, unit};
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
 /// A primitive wrench set W_i = { center + disc x : |x| <= 1 } in R^6 (paper, eq. 6): an ellipsoid of at most three

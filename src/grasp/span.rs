@@ -2,11 +2,12 @@
 
 use nalgebra::SMatrix;
 
-use super::check_tolerance;
 use super::contact::ContactError;
+use super::numbers::check_tolerance;
 use super::primitive::Primitive;
 use super::svd::Triangle;
-use crate::scalar::{Real, Vector, norm};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 
 /// The minimal subspace R of R^6 that contains a wrench set (paper, end of Section III), by an orthonormal basis. {0}
 /// is in the set, so R is the linear span of all centers and discs.

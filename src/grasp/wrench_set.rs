@@ -1,7 +1,8 @@
 //! The wrenches that a whole grasp can resist.
 
 use super::primitive::{Primitive, near_unit};
-use crate::scalar::{Real, Vector, norm};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
 /// What one contact, or one finger, contributes to a wrench set: W_i, a compact convex set of wrenches (paper, eq. 6), by its support function.

@@ -7,7 +7,7 @@
 //!
 //! Flat sets are kept whole, but for repeated points.
 
-use crate::prepare::{HullFacet, hull_facets, prepare_hull};
+use crate::solver::prepare::{HullFacet, hull_facets, prepare_hull};
 use crate::support::large_graph_len;
 use core::fmt;
 use nalgebra::Point3;

@@ -3,8 +3,9 @@
 //! Coordinates of x are the weights that make x of the points. Exchanging a point costs N^2 operations. The inverse is updated, and
 //! its error is not bounded: whoever concludes something from it measures first, and may [`polish`](Basis::polish).
 
-use crate::scalar::{Real, Vector};
-use crate::simplex::Vertex;
+use crate::math::Vector;
+use crate::polytope::simplex::Vertex;
+use crate::scalar::Real;
 use nalgebra::SMatrix;
 
 /// N points, some of them *artificial*: there only to begin with.

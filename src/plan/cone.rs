@@ -10,7 +10,8 @@
 //! All generators have coordinates of one sign pattern that add up to 1 (in size). So |g|_1 = 1, |u|_1 = |c|_1, and
 //! c.y is off u.x by at most one roundoff of |c|_1 max |x_i| <= sqrt(N) |u| |x| per halving, beside the rounding of the product.
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use heapless::Vec;
 
 /// The most halvings of an orthant: an edge of it is at most sqrt(2) long, and one in fifteen halves the longest.

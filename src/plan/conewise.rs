@@ -49,12 +49,13 @@
 use super::cone::Cone;
 use super::expansion::Expanded;
 use super::shoot::{Shot, descend, shoot};
-use crate::answer::Stop;
 use crate::bounds::Bracket;
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::polytope::{Facet, Insertion, Polytope};
 use crate::query::Query;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Vertex};
+use crate::query::answer::Stop;
+use crate::scalar::Real;
 use crate::support::Failure;
 use heapless::Vec;
 

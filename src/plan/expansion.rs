@@ -1,13 +1,14 @@
 //! Expansion of one polytope: Algorithm 1 of Zheng & Yamane.
 
-use crate::answer::Stop;
 use crate::bounds::Bracket;
-use crate::distance::Cloud;
+use crate::math::{Vector, norm};
+use crate::plan::distance::Cloud;
+use crate::plan::start::Start;
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::polytope::{Facet, Index, Insertion, Polytope};
 use crate::query::Query;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Vertex};
-use crate::start::Start;
+use crate::query::answer::Stop;
+use crate::scalar::Real;
 use crate::support::Failure;
 
 /// Insertions per dimension that [`Polytope::widen`] may spend.

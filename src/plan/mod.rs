@@ -11,8 +11,10 @@
 pub(crate) mod basis;
 mod cone;
 mod conewise;
+pub(crate) mod distance;
 pub(crate) mod expansion;
 pub(crate) mod race;
 mod ray;
 pub(crate) mod rays;
 pub(crate) mod shoot;
+pub(crate) mod start;

@@ -11,8 +11,8 @@
 
 use super::expansion::Expanded;
 use super::rays::{Crossings, RaySearch};
-use crate::answer::{Plan, Stop};
 use crate::polytope::Polytope;
+use crate::query::answer::{Plan, Stop};
 use crate::query::{Query, Work};
 use crate::scalar::Real;
 use crate::support::Failure;

@@ -26,8 +26,9 @@
 //! x = Σ w a / Σ w of A, whatever they are, and t q is off x by what is measured ([`Ray::reach`]).
 
 use super::basis::Basis;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Corner, Simplex, Vertex};
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::{Corner, Simplex, Vertex};
+use crate::scalar::Real;
 use heapless::Vec;
 
 /// What is minimised.

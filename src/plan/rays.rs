@@ -22,11 +22,12 @@
 
 use super::ray::Ray;
 use super::shoot::{Shot, shoot, shoot_from};
-use crate::answer::Stop;
 use crate::bounds::Bracket;
+use crate::math::{Vector, finite};
+use crate::polytope::simplex::Simplex;
 use crate::query::Query;
-use crate::scalar::{Real, Vector, finite};
-use crate::simplex::Simplex;
+use crate::query::answer::Stop;
+use crate::scalar::Real;
 use crate::support::Failure;
 
 /// A query that may be cut short begins with a pass to this share of d, for an early lower bound. The last pass is one with room for what the

@@ -1,10 +1,11 @@
 //! Rays shot at A by a query: for a polytopal Q they are the whole answer, for any other they find upper bounds.
 
 use super::ray::Ray;
-use crate::answer::Stop;
+use crate::math::{Vector, finite, norm};
+use crate::polytope::simplex::Vertex;
 use crate::query::Query;
-use crate::scalar::{Real, Vector, finite, norm};
-use crate::simplex::Vertex;
+use crate::query::answer::Stop;
+use crate::scalar::Real;
 use crate::support::Failure;
 
 /// More steps than any ray takes: rounding ends them earlier.

@@ -2,7 +2,8 @@
 //! queue, so that pushing out the lowest of n edges costs log n.
 
 use super::{Facet, Index, NONE, Polytope, State};
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 
 /// An edge of the chain.
 #[derive(Clone, Copy)]

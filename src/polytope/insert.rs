@@ -1,8 +1,9 @@
 //! Propositions 3 and 4: which facets a new point eliminates, and which it makes.
 
 use super::{Facet, Index, NONE, Polytope, State};
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::Vertex;
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::Vertex;
+use crate::scalar::Real;
 
 /// What became of an insertion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

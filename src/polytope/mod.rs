@@ -16,14 +16,16 @@
 //! the latter, and that no facet turned inside out on the way, which [`Polytope::is_sound`] tells.
 
 use crate::bounds::Axes;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Vertex};
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::{Simplex, Vertex};
+use crate::scalar::Real;
 
 mod chain;
 mod heap;
 mod insert;
 mod orthant;
 mod plane;
+pub(crate) mod simplex;
 
 pub use chain::Edge;
 pub use heap::{Entry, Heap};

@@ -7,8 +7,9 @@
 //! no plane needs repair.
 
 use super::{Facet, Index, NONE, Polytope, State};
-use crate::scalar::{Real, Vector, unit};
-use crate::simplex::Vertex;
+use crate::math::{Vector, unit};
+use crate::polytope::simplex::Vertex;
+use crate::scalar::Real;
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Starts anew with the region below one point: N facets, fresh, and the one at infinity.

@@ -1,7 +1,8 @@
 //! Planes of facets: the incremental normal and its repair.
 
 use super::{Index, Polytope};
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::math::{Vector, norm, unit};
+use crate::scalar::Real;
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The normal of the plane through the ridge that facets F and G share, and a point at height `above` > 0

@@ -10,7 +10,8 @@
 //! The Euclidean [`Ball`] makes d_Q the ordinary penetration depth; a [`Segment`] from the origin shoots a
 //! ray; an [`Ellipsoid`](EllipsoidGauge) or [`Vertices`] weigh the directions of a task.
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use crate::support::Failure;
 
 mod sets;

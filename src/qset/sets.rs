@@ -6,7 +6,8 @@
 use nalgebra::SMatrix;
 
 use super::Gauge;
-use crate::scalar::{Real, Vector, norm};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 use crate::support::{BoxShape, Ellipsoid, Failure, Point, Points, ShapeError, Support};
 
 /// `roundings` roundoffs of a length, with room for second order terms.

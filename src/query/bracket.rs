@@ -1,11 +1,12 @@
 //! What the query knows of d: bounds with their rounding, and when they are enough.
 
 use super::Query;
-use crate::answer::Stop;
 use crate::bounds::{Axes, Bracket, Tolerance};
+use crate::math::{Vector, norm};
 use crate::polytope::Facet;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Corner, Edges, Simplex};
+use crate::polytope::simplex::{Corner, Edges, Simplex};
+use crate::query::answer::Stop;
+use crate::scalar::Real;
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// The upper bound: proved by `direction`.

@@ -1,10 +1,11 @@
 //! How a query becomes an [`Answer`].
 
 use super::Query;
-use crate::answer::{Answer, Outcome, Stop};
 use crate::bounds::Bracket;
-use crate::scalar::{Real, Vector};
-use crate::simplex::{Simplex, Vertex};
+use crate::math::Vector;
+use crate::polytope::simplex::{Simplex, Vertex};
+use crate::query::answer::{Answer, Outcome, Stop};
+use crate::scalar::Real;
 use crate::support::Failure;
 
 impl<T: Real, const N: usize> Query<'_, T, N> {

@@ -1,13 +1,15 @@
 //! The state of one query: what has been asked of A and Q, the best upper bound so far, and how all of it becomes an
 //! [`Answer`].
 
-use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::{Axes, Bounds};
+use crate::math::{Vector, finite};
+use crate::polytope::simplex::Vertex;
 use crate::qset::Gauge;
-use crate::scalar::{Real, Vector, finite};
-use crate::simplex::Vertex;
+use crate::query::answer::{Answer, Plan, Stop};
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
+pub(crate) mod answer;
 mod bracket;
 mod end;
 mod work;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A block is 4 words of 16 bits, so that they reach far enough, or 1 word of 32 bits.
-//! [`Solver::prepare_hull`](crate::Solver::prepare_hull) and [`prepare_hull`](crate::prepare::prepare_hull) write it; it may be
+//! [`Solver::prepare_hull`](crate::Solver::prepare_hull) and [`prepare_hull`](crate::solver::prepare::prepare_hull) write it; it may be
 //! kept in a file or in flash.
 
 /// The most seeds: support vertices along the axes and the diagonals of a cube.
@@ -85,7 +85,7 @@ pub struct HullGraph<'a, W = u16> {
 
 impl<'a, W: Word> HullGraph<'a, W> {
     /// Opens words that [`Solver::prepare_hull`](crate::Solver::prepare_hull) or
-    /// [`prepare_hull`](crate::prepare::prepare_hull) has written. `None` when they are too short to be that.
+    /// [`prepare_hull`](crate::solver::prepare::prepare_hull) has written. `None` when they are too short to be that.
     #[must_use]
     pub fn from_words(words: &'a [W]) -> Option<Self> {
         let (header, rest) = words.split_at_checked(HEADER)?;

@@ -4,7 +4,8 @@ use super::graph::{HullGraph, SEEDS, Word};
 use super::load::one_by_one;
 use super::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled};
 use super::{Failure, Support};
-use crate::scalar::{Real, TwoWords, Vector, norm};
+use crate::math::{TwoWords, Vector, norm};
+use crate::scalar::Real;
 
 /// A list of points that is not empty, and the search for the farthest one. Heights above a plane are products u.p; with
 /// `FAR`, u.(p - first), which is more accurate where all points are far from the origin.
@@ -184,7 +185,7 @@ fn are_apart<T: Real, const N: usize>(edges: &[Vector<T, N>]) -> bool {
 /// subtractions a point): then `2 (N + 2) u spread`.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Points, Support}};
+/// use qdist::{Vector, support::{Points, Support}};
 /// let corners = [[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]];
 /// let triangle = Points::new(&corners).unwrap();
 /// assert_eq!(triangle.support(&Vector::from([1.0, 1.0])).unwrap(), Vector::from([2.0, 0.0]));

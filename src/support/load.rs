@@ -1,6 +1,7 @@
 //! Vectors on their way from one function to another.
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 
 /// A number, loaded alone.
 ///

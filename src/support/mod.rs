@@ -22,15 +22,16 @@
 
 use core::fmt;
 
-pub use crate::depth::Turning;
-pub use crate::depth::half_space::HalfSpace;
-use crate::depth::half_space::Unbounded;
-use crate::scalar::{Real, TwoWords, Vector};
+use crate::math::{TwoWords, Vector};
+use crate::scalar::Real;
+pub use crate::solver::depth::Turning;
+pub use crate::solver::depth::half_space::HalfSpace;
+use crate::solver::depth::half_space::Unbounded;
 
 mod combine;
 mod graph;
-mod hull;
-mod load;
+pub(crate) mod hull;
+pub(crate) mod load;
 pub(crate) mod shapes;
 mod solids;
 
@@ -38,14 +39,9 @@ pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use combine::{Measured, total};
 pub(crate) use graph::{GraphWriter, SEEDS};
 pub use graph::{HullGraph, Word, graph_len, large_graph_len};
-#[doc(hidden)]
-pub use hull::List;
 pub use hull::{Hull, Points};
-#[doc(hidden)]
-pub use load::{alone, one_by_one};
+pub(crate) use load::one_by_one;
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
-#[doc(hidden)]
-pub use shapes::{check_numbers, check_sizes, near_unit};
 pub use solids::{Capsule, Cone, Cylinder};
 
 /// A support function gave up; the number is the caller's own code (never zero).

@@ -15,7 +15,8 @@ use core::fmt;
 
 use super::load::one_by_one;
 use super::{Failure, Support, Symmetry, Turning};
-use crate::scalar::{Real, TwoWords, Vector};
+use crate::math::{TwoWords, Vector};
+use crate::scalar::Real;
 
 /// Why a shape cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,7 +180,7 @@ pub(crate) fn above<T: Real>(x: T, n: usize) -> T {
 /// A single point. Exact: `error` is 0.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Point, Support}};
+/// use qdist::{Vector, support::{Point, Support}};
 /// let p = Point::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
 /// assert_eq!(p.support(&Vector::from([1.0, 0.0, 0.0])).unwrap()[2], 3.0);
 /// ```
@@ -277,7 +278,7 @@ impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
 /// A box [-h_1, h_1] x ... x [-h_N, h_N]. A vertex is chosen by signs alone, so `error` is 0 for every direction.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{BoxShape, Support}};
+/// use qdist::{Vector, support::{BoxShape, Support}};
 /// let b = BoxShape::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
 /// assert_eq!(b.support(&Vector::from([1.0, -1.0, 1e-30])).unwrap(), Vector::from([1.0, -2.0, 3.0]));
 /// ```
@@ -347,7 +348,7 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
 /// `(2 N + 16) u max(D)`; in the cold path underflow adds less than roundoff.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Ellipsoid, Support}};
+/// use qdist::{Vector, support::{Ellipsoid, Support}};
 /// let e = Ellipsoid::new(Vector::from([1.0, 2.0, 3.0])).unwrap();
 /// let u = Vector::from([0.0, 5.0, 0.0]);
 /// let farthest = e.support(&u).unwrap() + u / 5.0 * e.radius();

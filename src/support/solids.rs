@@ -3,7 +3,8 @@
 use super::load::one_by_one;
 use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
 use super::{Failure, Support, Symmetry, Turning};
-use crate::scalar::{Real, TwoWords, Vector};
+use crate::math::{TwoWords, Vector};
+use crate::scalar::Real;
 
 /// A cylinder: `x^2 + y^2 <= radius^2`, `|z| <= half_height`. One square root and one division.
 ///
@@ -11,7 +12,7 @@ use crate::scalar::{Real, TwoWords, Vector};
 /// have relative error 5 roundoffs (the unit vector) + 1 (times the radius); `8 u radius`.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Cylinder, Support}};
+/// use qdist::{Vector, support::{Cylinder, Support}};
 /// let c = Cylinder::new(2.0, 1.0).unwrap();
 /// assert_eq!(c.support(&Vector::from([3.0, 0.0, -1.0])).unwrap(), Vector::from([2.0, 0.0, -1.0]));
 /// ```
@@ -74,7 +75,7 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
 /// and y in the plane (`N` = 2). The core is the segment, the radius is the ball term. Exact: `error` is 0.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Capsule, Support}};
+/// use qdist::{Vector, support::{Capsule, Support}};
 /// let c = Capsule::new(0.5, 2.0).unwrap();
 /// assert_eq!(c.support(&Vector::from([3.0, 0.0, -1.0])).unwrap(), Vector::from([0.0, 0.0, -2.0]));
 /// assert_eq!(c.radius(), 0.5);
@@ -146,7 +147,7 @@ impl<T: Real, const N: usize> Support<T, N> for Capsule<T, N> {
 /// `6 u radius`, as for the cylinder; together less than `16 u (radius + half_height)`.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{Cone, Support}};
+/// use qdist::{Vector, support::{Cone, Support}};
 /// let c = Cone::new(1.0, 2.0).unwrap();
 /// assert_eq!(c.support(&Vector::from([1.0, 0.0, 1.0])).unwrap(), Vector::from([0.0, 0.0, 2.0]));
 /// assert_eq!(c.support(&Vector::from([1.0, 0.0, 0.0])).unwrap(), Vector::from([1.0, 0.0, -2.0]));

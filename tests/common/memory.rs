@@ -1,7 +1,7 @@
 //! A solver's memory with capacities chosen at run time.
 
-use qdist::workspace::{Layout, place};
 use qdist::{Answer, Depth, Options, Outcome, Real, Solver};
+use qdist::{Layout, place};
 use std::mem::MaybeUninit;
 
 pub struct Memory {

@@ -11,8 +11,8 @@ use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
 use super::sets::{qdist_set_f64, room};
-use qdist::scalar::Real;
 use core::ffi::c_void;
+use qdist::Real;
 
 /// Two sets of the same dimension.
 #[repr(C)]

@@ -13,9 +13,9 @@ use super::super::status::{
 };
 use super::super::symmetry::qdist_mirrored;
 use super::points::qdist_points_f64;
-use qdist::qset::{Ball, Gauge};
-use qdist::scalar::Real;
 use core::ffi::c_void;
+use qdist::Real;
+use qdist::qset::{Ball, Gauge};
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.

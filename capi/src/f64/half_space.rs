@@ -13,11 +13,12 @@ use super::super::generic::{aligned, put, shared};
 use super::super::status::{Check, QDIST_ERROR_UNBOUNDED, from_body, from_shape, overflow, qdist_status, status};
 use super::query::{conclude, convert, from_depth, qdist_depth_f64};
 use super::sets::{CheckedBody, qdist_body_f64, qdist_set_f64};
-use qdist::Body;
-use qdist::depth::{self, BodyError, Matrix3};
-use qdist::scalar::Vector;
-use qdist::support::HalfSpace;
 use core::ffi::c_void;
+use qdist::Body;
+use qdist::Vector;
+use qdist::internal;
+use qdist::support::HalfSpace;
+use qdist::{BodyError, Matrix3};
 
 /// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.
 #[repr(C)]
@@ -108,7 +109,7 @@ unsafe extern "C" fn answer(
             (a, b, convert::<3>(options.cast())?)
         };
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
-        let depth = depth::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
+        let depth = internal::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
         overflow(depth.failure)?;
         // SAFETY: `qdist_depth3_f64` has checked it.
         unsafe { put(result.cast::<qdist_depth_f64>(), from_depth(&depth)) };

@@ -9,10 +9,10 @@ use super::super::generic::{aligned, put, shared, tiny};
 use super::super::status::{Check, QDIST_ERROR_UNBOUNDED, from_body, from_shape, qdist_status, status};
 use super::sets::{CheckedBody, arguments, qdist_body_f64, qdist_set_f64};
 use super::shapes::from_symmetry;
-use qdist::depth::Matrix3;
-use qdist::scalar::{Real, Vector};
-use qdist::support::{Join, Rigid, Support};
 use core::ffi::c_void;
+use qdist::Matrix3;
+use qdist::support::{Join, Rigid, Support};
+use qdist::{Real, Vector};
 
 /// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
 /// has changed must be made anew.

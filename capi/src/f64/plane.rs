@@ -18,11 +18,12 @@ use super::points::{self, qdist_points_f64};
 use super::query::{conclude, convert, from_depth, qdist_depth_f64, qdist_options_f64};
 use super::sets::{arguments, ask_height, qdist_height_f64, qdist_set_f64, qdist_support_f64};
 use super::shapes::{self, Shape, shape};
-use qdist::Body;
-use qdist::depth::{self, BodyError, Matrix2};
-use qdist::scalar::{Real, TwoWords, Vector};
-use qdist::support::{BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Rigid, ShapeError, Sphere, Support};
 use core::ffi::c_void;
+use qdist::Body;
+use qdist::internal;
+use qdist::support::{BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Rigid, ShapeError, Sphere, Support};
+use qdist::{BodyError, Matrix2};
+use qdist::{Real, TwoWords, Vector};
 
 /// A set in the plane with a pose: x -> rotation * x + translation.
 #[repr(C)]
@@ -547,7 +548,7 @@ unsafe extern "C" fn answer(
             (a, b, convert::<2>(options.cast())?)
         };
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
-        let depth = depth::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
+        let depth = internal::unbounded(&a, &b, &options).ok_or(QDIST_ERROR_UNBOUNDED)?;
         overflow(depth.failure)?;
         // SAFETY: `qdist_depth2_f64` has checked it.
         unsafe { put(result.cast::<qdist_depth_f64>(), from_depth(&depth)) };

@@ -14,10 +14,11 @@ use super::super::status::{
     from_graph, qdist_interrupt, qdist_status, status,
 };
 use super::sets::{answer_height, arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64, room};
-use qdist::prepare::{HullFacet, hull_facets, prepare_hull};
-use qdist::scalar::Real;
-use qdist::support::{HullGraph, List, Points, Support, Word, graph_len, large_graph_len, near_unit, one_by_one};
 use core::ffi::c_void;
+use qdist::Real;
+use qdist::internal::{List, near_unit, one_by_one};
+use qdist::support::{HullGraph, Points, Support, Word, graph_len, large_graph_len};
+use qdist::{HullFacet, hull_facets, prepare_hull};
 
 /// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
 #[repr(C)]

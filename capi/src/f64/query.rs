@@ -31,14 +31,14 @@ use super::super::status::{
 };
 use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
+use core::ffi::c_void;
 #[cfg(feature = "grasp")]
 use qdist::Plan;
-use qdist::scalar::{Real, Vector};
-#[cfg(feature = "grasp")]
-use qdist::simplex::{Simplex, Vertex};
-use qdist::support::{alone, one_by_one};
+use qdist::internal::{alone, one_by_one};
 use qdist::{Answer, Depth, Options, Outcome};
-use core::ffi::c_void;
+use qdist::{Real, Vector};
+#[cfg(feature = "grasp")]
+use qdist::{Simplex, Vertex};
 
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.

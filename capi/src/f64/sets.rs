@@ -12,11 +12,11 @@ use super::super::status::{
 use super::super::symmetry::{
     QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored, qdist_turning, qdist_unbounded,
 };
-use qdist::Body;
-use qdist::depth::{BodyError, Matrix3};
-use qdist::scalar::{Real, TwoWords, Vector};
-use qdist::support::{Failure, Support, Symmetry, Turning};
 use core::ffi::c_void;
+use qdist::Body;
+use qdist::support::{Failure, Support, Symmetry, Turning};
+use qdist::{BodyError, Matrix3};
+use qdist::{Real, TwoWords, Vector};
 
 /// Writes a point of the core that is farthest along `direction` to `point`.
 ///

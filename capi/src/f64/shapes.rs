@@ -15,9 +15,9 @@ use super::super::generic::{aligned, mirrored_always, put, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
 use super::sets::{answer_height, arguments, qdist_body_f64, qdist_height_f64, qdist_set_f64, qdist_support_f64};
-use qdist::scalar::{Real, TwoWords, Vector};
-use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry, Turning};
 use core::ffi::c_void;
+use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry, Turning};
+use qdist::{Real, TwoWords, Vector};
 
 /// All points within `radius` of the origin.
 #[repr(C)]

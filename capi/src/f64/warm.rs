@@ -20,8 +20,8 @@ use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::query::{Asked, qdist_options_f64, qdist_result_f64};
 use super::sets::qdist_set_f64;
 use qdist::Tracker;
-use qdist::scalar::{Real, Vector};
-use qdist::tracker::REMEMBERED;
+use qdist::internal::REMEMBERED;
+use qdist::{Real, Vector};
 
 const _: () = assert!(REMEMBERED == 4);
 

@@ -10,9 +10,9 @@ use super::guard::guard;
 use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
 use super::model::qdist_mesh_mass;
 use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
-use qdist::mesh::{DepthOptions, Effort, MeshDepth, Outcome, Progress};
 use core::ffi::{c_char, c_void};
 use core::ptr::{null, null_mut};
+use qdist::mesh::{DepthOptions, Effort, MeshDepth, Outcome, Progress};
 use qdist::nalgebra::Isometry3;
 
 /// How much is done for a depth?

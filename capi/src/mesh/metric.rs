@@ -8,11 +8,11 @@ use super::super::status::{
 };
 use super::model::qdist_mesh_mass;
 use super::pair::qdist_mesh_pose;
+use core::ffi::c_void;
 use qdist::mesh::mass::MassProperties;
 use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Sigma};
 use qdist::mesh::optimize::Quadratic;
 use qdist::mesh::{MAX_COORDINATE, Model};
-use core::ffi::c_void;
 use qdist::nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector6};
 
 /// Which metric?

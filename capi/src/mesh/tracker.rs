@@ -24,9 +24,9 @@ use super::guard::{Exclusive, Taken, caught, guard};
 use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
 use super::model::{qdist_mesh, qdist_mesh_mass};
 use super::pair::qdist_mesh_pose;
-use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
 use core::ffi::c_void;
 use core::ptr::{null, null_mut};
+use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
 use std::sync::Arc;
 
 /// A tracker: opaque.

@@ -22,7 +22,8 @@ use super::super::svd::dot;
 use super::UNSOLVED;
 use super::face::{Face, MAX_CONTACTS, WIDTH, presses};
 use super::program::{Iterate, Program};
-use crate::scalar::{Accumulator, Real, Vector, norm};
+use crate::math::{Accumulator, Vector, norm};
+use crate::scalar::Real;
 use crate::support::Failure;
 
 /// Interior point steps; 10 to 25 are usual.

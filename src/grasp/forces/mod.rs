@@ -4,7 +4,8 @@ mod program;
 mod search;
 mod solver;
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use core::fmt;
 pub use solver::ForceSolver;
 pub use solver::check;

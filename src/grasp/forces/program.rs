@@ -16,9 +16,10 @@
 //! * **Ties** are the rule in symmetric grasps, and with them a simplex method may go in circles. They are broken as if w were moved a
 //!   little towards a generic point of the first basis' cone (lexicographic rule, Dantzig 1955), whose coordinates are carried along.
 
+use crate::math::Vector;
 use crate::plan::basis::Basis;
-use crate::scalar::{Real, Vector};
-use crate::simplex::Vertex;
+use crate::polytope::simplex::Vertex;
+use crate::scalar::Real;
 
 /// A coordinate that is no larger than this many roundoffs of what it is made of is rounding.
 const NOISE: usize = 32;

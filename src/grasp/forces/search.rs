@@ -4,8 +4,9 @@
 use super::super::wrench_set::{Contribution, Norm, WrenchSet};
 use super::program::Program;
 use super::{ForceOptions, ForceOutcome, Forces, precision};
-use crate::scalar::{Real, Vector, finite, norm, unit};
-use crate::simplex::Vertex;
+use crate::math::{Vector, finite, norm, unit};
+use crate::polytope::simplex::Vertex;
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 use heapless::Vec;
 

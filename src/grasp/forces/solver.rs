@@ -25,11 +25,12 @@
 //!   reported, too.
 
 use super::super::finger::{Finger, MAX_CONTACTS};
-use super::super::usable;
+use super::super::numbers::usable;
 use super::super::wrench_set::{Contribution, WrenchSet};
 use super::search::Search;
 use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::math::{Vector, norm, unit};
+use crate::scalar::Real;
 use crate::support::Failure;
 use core::borrow::Borrow;
 use heapless::Vec;

@@ -35,7 +35,8 @@ use super::frame::WrenchFrame;
 use super::hand::{ActiveForces, HandContact};
 use super::jacobian::MAX_JOINTS;
 use super::svd::{Svd, dot};
-use crate::scalar::{Real, Vector, norm};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 
 /// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,8 @@ use heapless::Vec;
 use super::super::wrench_set::Norm;
 use super::search::Problem;
 use super::ties::{Kind, Matrix6, Part, TIES, Ties, Vector6, is_tip, is_weighed};
-use crate::scalar::{Real, norm};
+use crate::math::norm;
+use crate::scalar::Real;
 
 const SIZE: usize = 7 + TIES;
 /// More steps than any convergent run takes.

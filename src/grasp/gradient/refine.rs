@@ -26,14 +26,15 @@
 //! The Hessian of h_Q is taken from differences of its mapping s_Q: zero for polytopes, good to sqrt(roundoff) for others,
 //! which costs Newton's method nothing that counts, since the equations themselves are exact.
 
-use super::super::default_tolerance;
+use super::super::numbers::default_tolerance;
 use super::super::span::Subspace;
 use super::super::wrench_set::{Norm, WrenchSet};
 use super::search::Problem;
 use super::ties::{Kind, Part, Tie, Ties, tip};
-use crate::answer::Answer;
+use crate::math::{Vector, norm};
 use crate::qset::Gauge;
-use crate::scalar::{Real, Vector, norm};
+use crate::query::answer::Answer;
+use crate::scalar::Real;
 
 /// Why an optimum has no gradient, or none that could be told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,12 +5,13 @@ use super::super::span::Subspace;
 use super::super::wrench_set::{Norm, WrenchSet};
 use super::newton::{Equations, Iterate};
 use super::ties::{Kind, Matrix6, Part, Tie, Ties, Vector6, has_squeeze, is_weighed, squeezed, tip};
-use crate::answer::Answer;
 use crate::bounds::Bounds;
+use crate::math::{Vector, finite, norm, unit};
 use crate::plan::shoot::descend;
 use crate::qset::Gauge;
+use crate::query::answer::Answer;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, finite, norm, unit};
+use crate::scalar::Real;
 use crate::support::Support;
 
 /// Corrections of one guess.

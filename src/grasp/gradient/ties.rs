@@ -4,7 +4,8 @@ use heapless::Vec;
 use nalgebra::SMatrix;
 
 use super::super::primitive::{Primitive, frobenius};
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::math::{Vector, norm, unit};
+use crate::scalar::Real;
 
 /// Equations beside the six of u and the one of d: more than six are never independent.
 pub(super) const TIES: usize = 6;

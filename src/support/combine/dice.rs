@@ -2,7 +2,7 @@
 
 use nalgebra::SMatrix;
 
-use crate::scalar::Vector;
+use crate::math::Vector;
 
 /// A 3 x 3 matrix.
 pub type M = SMatrix<f64, 3, 3>;

@@ -2,7 +2,8 @@
 
 use super::linear::measured_extent;
 use super::{above, total};
-use crate::scalar::{Real, Vector, finite};
+use crate::math::{Vector, finite};
+use crate::scalar::Real;
 use crate::support::shapes::{in_range, largest, length, rescaled, unit};
 use crate::support::{Failure, Support, Symmetry};
 
@@ -26,7 +27,7 @@ use crate::support::{Failure, Support, Symmetry};
 ///
 /// ```
 /// use nalgebra::Matrix3;
-/// use qdist::{scalar::Vector, support::{Join, Rigid, Sphere, Support}};
+/// use qdist::{Vector, support::{Join, Rigid, Sphere, Support}};
 /// let tip = Rigid::new(Sphere::new(0.25).unwrap(), Matrix3::identity(), Vector::from([0.0, 0.0, 2.0])).unwrap();
 /// let tapered_capsule = Join::new(Sphere::<f64, 3>::new(1.0).unwrap(), tip);
 /// assert_eq!(tapered_capsule.radius(), 0.25);

@@ -3,7 +3,8 @@
 use nalgebra::SMatrix;
 
 use super::{if_known, mapped, total, transposed};
-use crate::scalar::{Real, Vector, norm};
+use crate::math::{Vector, norm};
+use crate::scalar::Real;
 use crate::support::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled, unit};
 use crate::support::{Failure, Support};
 
@@ -19,7 +20,7 @@ use crate::support::{Failure, Support};
 ///
 /// ```
 /// use nalgebra::SMatrix;
-/// use qdist::{scalar::Vector, support::{Linear, Sphere, Support}};
+/// use qdist::{Vector, support::{Linear, Sphere, Support}};
 /// let ball = Sphere::<f64, 2>::new(1.0).unwrap();
 /// let ellipse = Linear::new(ball, SMatrix::<f64, 2, 2>::new(3.0, 0.0, 0.0, 0.0), Vector::zeros()).unwrap();
 /// assert_eq!(ellipse.support(&Vector::from([2.0, 1.0])).unwrap(), Vector::from([3.0, 0.0]));

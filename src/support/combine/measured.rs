@@ -5,7 +5,8 @@
 //! same share of that box's size, in any direction: what is rounded along a short axis may have been as long as a long one. An error that the set
 //! states by itself says something else, and stays.
 
-use crate::scalar::{Real, TwoWords, Vector, norm};
+use crate::math::{TwoWords, Vector, norm};
+use crate::scalar::Real;
 use crate::support::{Failure, Support, Symmetry};
 
 /// A set, and the box around its core.

@@ -13,8 +13,9 @@ use nalgebra::SMatrix;
 
 use super::shapes::above;
 use super::{Failure, Support, Symmetry, Turning};
-use crate::depth::half_space::Unbounded;
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
+use crate::solver::depth::half_space::Unbounded;
 
 #[cfg(test)]
 mod dice;

@@ -3,7 +3,8 @@
 use nalgebra::SMatrix;
 
 use super::{if_known, mapped, total, transposed};
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use crate::support::shapes::{ShapeError, above, check_numbers, length, magnitude, unit};
 use crate::support::{Failure, Support, Symmetry};
 
@@ -20,7 +21,7 @@ use crate::support::{Failure, Support, Symmetry};
 ///
 /// ```
 /// use nalgebra::SMatrix;
-/// use qdist::{scalar::Vector, support::{BoxShape, Rigid, Support}};
+/// use qdist::{Vector, support::{BoxShape, Rigid, Support}};
 /// let b = BoxShape::new(Vector::from([1.0, 2.0])).unwrap();
 /// let quarter_turn = SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0);
 /// let moved = Rigid::new(&b, quarter_turn, Vector::from([10.0, 0.0])).unwrap();

@@ -1,7 +1,8 @@
 //! Sets that are scaled, or grown by a margin.
 
 use super::{pair_error, pair_errors, total};
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use crate::support::shapes::{ShapeError, above, check_sizes};
 use crate::support::{Failure, Support, Symmetry};
 
@@ -77,7 +78,7 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
 /// of the set.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{BoxShape, Margin, Support}};
+/// use qdist::{Vector, support::{BoxShape, Margin, Support}};
 /// let b = Margin::new(BoxShape::new(Vector::from([1.0, 1.0])).unwrap(), 0.1).unwrap();
 /// assert_eq!(b.radius(), 0.1);
 /// ```

@@ -1,7 +1,8 @@
 //! Minkowski sums and differences.
 
 use super::{all_if_known, if_known, pair_error, pair_errors, total};
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
 /// The Minkowski sum `{x + y : x in a, y in b}`. Ball terms add up.
@@ -10,7 +11,7 @@ use crate::support::{Failure, Support};
 /// covered by the solver's margin, since that rounding is at most u |p|.
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{BoxShape, Sphere, Sum, Support}};
+/// use qdist::{Vector, support::{BoxShape, Sphere, Sum, Support}};
 /// let rounded = Sum::new(BoxShape::new(Vector::from([1.0, 1.0])).unwrap(), Sphere::new(0.1).unwrap());
 /// assert_eq!(rounded.radius(), 0.1);
 /// ```
@@ -78,7 +79,7 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
 /// `error` as for [`Sum`].
 ///
 /// ```
-/// use qdist::{scalar::Vector, support::{BoxShape, Difference, Point, Support}};
+/// use qdist::{Vector, support::{BoxShape, Difference, Point, Support}};
 /// let b = BoxShape::new(Vector::from([1.0, 1.0])).unwrap();
 /// let p = Point::new(Vector::from([0.25, 0.0])).unwrap();
 /// let d = Difference::new(&b, &p);
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn mirrors_are_proofs() {
-        use crate::distance::Inflated;
+        use crate::plan::distance::Inflated;
         use crate::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Margin, Point, Scaled, Sphere};
         let at = |x: [f64; 3]| Point::new(Vector::from(x)).unwrap();
         let cuboid = BoxShape::new(Vector::from([1.0, 2.0, 3.0])).unwrap();

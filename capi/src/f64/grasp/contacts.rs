@@ -9,11 +9,12 @@ use super::super::super::grasp::{
     QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
 };
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
+use qdist::Vector;
 use qdist::grasp::{
     ActiveForces, Contact, ContactError, Friction, GraspError, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace,
-    WrenchFrame, default_tolerance, usable,
+    WrenchFrame, default_tolerance,
 };
-use qdist::scalar::Vector;
+use qdist::internal::usable;
 
 const _: () = assert!(MAX_JOINTS == 8);
 

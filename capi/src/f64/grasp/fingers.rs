@@ -12,14 +12,15 @@ use super::super::super::status::{Check, QDIST_ERROR_CALLBACK, QDIST_ERROR_FINGE
 use super::super::sets::{qdist_set_f64, room};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
 use super::forces::{qdist_force_memory_f64, qdist_force_options_f64, qdist_forces_f64, resist};
-use qdist::grasp::{
-    Contact, ContactError, Contribution, Finger, Friction, GraspError, HandContact, MAX_CONTACTS, MAX_JOINTS, WrenchSet,
-};
-use qdist::scalar::Vector;
-use qdist::support::{Failure, Support, one_by_one};
 use core::borrow::Borrow;
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
+use qdist::Vector;
+use qdist::grasp::{
+    Contact, ContactError, Contribution, Finger, Friction, GraspError, HandContact, MAX_CONTACTS, MAX_JOINTS, WrenchSet,
+};
+use qdist::internal::one_by_one;
+use qdist::support::{Failure, Support};
 
 /// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
 #[repr(C)]

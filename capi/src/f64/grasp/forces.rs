@@ -9,8 +9,9 @@ use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use super::wrenches::qdist_wrenches_f64;
-use qdist::grasp::{Contribution, ForceOptions, ForceOutcome, ForceSolver, WrenchSet, check_forces};
-use qdist::scalar::Vector;
+use qdist::Vector;
+use qdist::grasp::{Contribution, ForceOptions, ForceOutcome, ForceSolver, WrenchSet};
+use qdist::internal::check_forces;
 use qdist::support::Failure;
 
 /// When a search for contact forces ends. NULL stands for the defaults.

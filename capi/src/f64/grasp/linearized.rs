@@ -17,14 +17,16 @@ use super::super::super::status::{
 use super::super::gauges::qdist_segment_gauge_f64;
 use super::super::sets::{qdist_set_f64, room};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
+use core::ffi::c_void;
 use qdist::grasp::{
     Contact, ContactError, Contribution, Friction, GraspError, Layout, Norm, Preset, PyramidalCone, WrenchFrame,
-    WrenchSet, min_weight, opposed, usable,
+    WrenchSet, min_weight,
 };
+use qdist::internal::one_by_one;
+use qdist::internal::{opposed, usable};
 use qdist::qset::Gauge;
-use qdist::scalar::{Real, Vector};
-use qdist::support::{Failure, Support, one_by_one};
-use core::ffi::c_void;
+use qdist::support::{Failure, Support};
+use qdist::{Real, Vector};
 
 /// Where the edges of friction pyramids are.
 #[repr(C)]

@@ -10,10 +10,11 @@ use super::super::super::grasp::{norm, qdist_norm};
 use super::super::super::status::{Check, qdist_status, status};
 use super::super::sets::{qdist_set_f64, room};
 use super::contacts::qdist_primitive_f64;
-use qdist::grasp::WrenchSet;
-use qdist::scalar::Vector;
-use qdist::support::{Failure, Support, one_by_one};
 use core::ffi::c_void;
+use qdist::Vector;
+use qdist::grasp::WrenchSet;
+use qdist::internal::one_by_one;
+use qdist::support::{Failure, Support};
 
 /// The wrench set of a list of primitives, 1 or more, with {0} in it. The list must outlive the sets that are made of it.
 #[repr(C)]

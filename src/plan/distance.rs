@@ -5,9 +5,10 @@
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
 
 use crate::bounds::Axes;
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::qset::Gauge;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Vertex};
+use crate::scalar::Real;
 use crate::support::{Failure, Support, total};
 
 /// Where the iteration ended.

@@ -20,12 +20,13 @@
 //! 16 s) E, once for u and once for the axes that are asked in its place. The roundoffs are those of measuring it.
 
 use super::{Body, Depth, Pair, SKEW_ROUNDOFFS, skew};
-use crate::answer::Answer;
 use crate::bounds::Bracket;
+use crate::math::{Vector, norm, unit};
+use crate::polytope::simplex::Simplex;
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::scalar::{Real, Vector, norm, unit};
-use crate::simplex::Simplex;
+use crate::query::answer::Answer;
+use crate::scalar::Real;
 use crate::solver::Solver;
 
 /// How far the axes may be from one another for the estimates above.

@@ -33,10 +33,11 @@
 //! is no upper bound.
 
 use super::{Body, Depth};
-use crate::answer::{Outcome, Stop};
 use crate::bounds::{Bracket, Tolerance};
+use crate::math::{Accumulator, Vector, finite, norm};
 use crate::query::Options;
-use crate::scalar::{Accumulator, Real, Vector, finite, norm};
+use crate::query::answer::{Outcome, Stop};
+use crate::scalar::Real;
 use crate::support::shapes::{check_numbers, largest};
 use crate::support::{Failure, ShapeError, Support};
 use crate::{NOT_FINITE, TOO_LARGE, UNBOUNDED};

@@ -3,8 +3,9 @@
 //! The paper takes them from a closest-point iteration; none is needed, since expansion tolerates an origin outside. A flat
 //! set shows up here.
 
-use crate::scalar::{Real, Vector, norm, unit};
-use crate::simplex::{Edges, MAX_CORNERS};
+use crate::math::{Vector, norm, unit};
+use crate::polytope::simplex::{Edges, MAX_CORNERS};
+use crate::scalar::Real;
 use heapless::Vec;
 
 /// Asks for directions and takes points until A's affine hull is known.

@@ -1,8 +1,9 @@
 //! What a query returns: an outcome, a bracket, and the evidence for both ends.
 
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::Simplex;
 use crate::qset::Gauge;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::Simplex;
+use crate::scalar::Real;
 
 /// What a run concluded. Whatever it is, the bracket holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

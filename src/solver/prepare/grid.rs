@@ -7,7 +7,8 @@
 //! axes are no thinner than other hulls. The hull is that of points displaced by less than 2^-59 M in each coordinate, which is a
 //! sixty-fourth of the roundoff of a coordinate of size M in `f64`, and nothing in `f32` but for the smallest coordinates.
 
-use crate::scalar::{Real, Vector};
+use crate::math::Vector;
+use crate::scalar::Real;
 
 /// A point in units of the grid; below 2^61 + 2^10 in size.
 pub(super) type Node = [i64; 3];

@@ -3,7 +3,8 @@
 //! It rests on Gram-Schmidt over at most N edges, with no matrix to invert and nothing to pivot on that could vanish
 //! unnoticed.
 
-use crate::scalar::{Real, Vector, norm, unit};
+use crate::math::{Vector, norm, unit};
+use crate::scalar::Real;
 use heapless::Vec;
 
 /// The most vertices that a simplex in R^N can have here, N + 1 <= 7.

@@ -26,12 +26,13 @@
 //! `sectors`), is loose, not false. The edge that bounds d is pushed out as in Algorithm 1; where its normal would leave its
 //! quadrant it is turned back to the border.
 
-use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
+use crate::math::{Vector, norm};
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::polytope::{Edge, Index, Polytope};
 use crate::query::Query;
-use crate::scalar::{Real, Vector, norm};
-use crate::simplex::{Simplex, Vertex};
+use crate::query::answer::{Answer, Plan, Stop};
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::Failure;
 

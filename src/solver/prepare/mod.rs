@@ -7,8 +7,9 @@
 
 use core::fmt;
 
+use crate::math::{Vector, norm};
 use crate::polytope::Facet;
-use crate::scalar::{Real, Vector, norm};
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{GraphWriter, HullGraph, Points, SEEDS, ShapeError, Word};
 use grid::{Grid, Plane, distance};
@@ -78,13 +79,13 @@ pub const fn hull_facets(count: usize) -> usize {
 /// as they come (100,000 on a sphere: half a second); n^2 for some that are made for it.
 ///
 /// ```
-/// use qdist::prepare::{HullFacet, hull_facets, prepare_hull};
+/// use qdist::{HullFacet, hull_facets, prepare_hull};
 /// use qdist::support::{Hull, large_graph_len};
 /// let corners: Vec<[f64; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from)).collect();
 /// let mut words = vec![0u32; large_graph_len(8)];
 /// let graph = prepare_hull(&corners, &mut words, &mut vec![HullFacet::EMPTY; hull_facets(8)], None)?;
 /// let cube = Hull::new(&corners, graph).unwrap();
-/// # Ok::<(), qdist::prepare::GraphError>(())
+/// # Ok::<(), qdist::GraphError>(())
 /// ```
 ///
 /// # Errors

@@ -3,9 +3,9 @@
 //! A solver keeps nothing between queries, so a batch is a loop. What it adds is to stop early: to find the best of many grasps, the depth of most
 //! need not be known. As soon as one is certainly no better than the best so far, it is done, and that costs a fraction of a full answer.
 
-use crate::answer::{Answer, Outcome};
 use crate::qset::Gauge;
 use crate::query::Options;
+use crate::query::answer::{Answer, Outcome};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::Support;

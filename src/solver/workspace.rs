@@ -1,8 +1,8 @@
 //! Memory: one layout, placed in the caller's memory or owned by a const-generic struct.
 
+use crate::polytope::simplex::Vertex;
 use crate::polytope::{Entry, Facet, Polytope};
 use crate::scalar::Real;
-use crate::simplex::Vertex;
 use crate::solver::Solver;
 use core::fmt;
 use core::mem::{MaybeUninit, align_of, size_of};

@@ -1,20 +1,29 @@
 //! The solver: which plan a query takes, and how what the plan shows becomes the answer.
 
-use crate::answer::{Answer, Plan, Stop};
+pub(crate) mod batch;
+pub(crate) mod depth;
+pub(crate) mod prepare;
+mod second_look;
+mod span;
+pub(crate) mod warm;
+pub(crate) mod workspace;
+
 use crate::bounds::Bracket;
-use crate::distance::{Cloud, Inflated, Nearest, nearest};
+use crate::math::Vector;
+use crate::plan::distance::{Cloud, Inflated, Nearest, nearest};
 use crate::plan::expansion::Expanded;
 use crate::plan::race::{Ended, by_rays, race};
 use crate::plan::rays::Crossings;
 use crate::polytope::Polytope;
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::qset::Gauge;
+use crate::query::answer::{Answer, Plan, Stop};
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector};
-use crate::simplex::{Simplex, Vertex};
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
-/// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::workspace::Workspace) or
-/// [`place`](crate::workspace::place).
+/// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::solver::workspace::Workspace) or
+/// [`place`](crate::solver::workspace::place).
 ///
 /// A solver keeps nothing between queries; the memory is overwritten. One solver per thread.
 pub struct Solver<'w, T, const N: usize> {

@@ -48,13 +48,14 @@
 //! the chain is one of M too, and may lower the upper bound. No memory is needed but that of one chain. Directions without an arc, where M is smooth or has corners off the
 //! axis, need small sectors; the search gives up after [`CALLS`], and expansion goes on.
 
-use crate::answer::{Answer, Plan, Stop};
-use crate::distance::nearest;
-use crate::meridian::{Section, across, trace};
+use crate::math::{Vector, norm, unit};
+use crate::plan::distance::nearest;
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::query::Query;
-use crate::scalar::{Real, Vector, norm, unit};
-use crate::simplex::{Simplex, Vertex};
+use crate::query::answer::{Answer, Plan, Stop};
+use crate::scalar::Real;
 use crate::solver::Solver;
+use crate::solver::depth::meridian::{Section, across, trace};
 use crate::support::Failure;
 use heapless::Vec;
 

@@ -13,11 +13,12 @@
 
 use core::fmt;
 
-use crate::answer::{Answer, Outcome};
 use crate::bounds::Axes;
+use crate::math::{Accumulator, Vector, finite, norm};
 use crate::qset::Ball;
+use crate::query::answer::{Answer, Outcome};
 use crate::query::{Options, Query};
-use crate::scalar::{Accumulator, Real, Vector, finite, norm};
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
 use crate::{NOT_FINITE, TOO_LARGE};
@@ -27,6 +28,8 @@ mod arcs;
 mod ellipsoids;
 mod fine;
 pub(crate) mod half_space;
+mod meridian;
+mod sectors;
 
 use arcs::NEARLY_COAXIAL;
 pub use arcs::Turning;

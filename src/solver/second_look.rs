@@ -9,9 +9,10 @@
 //!
 //! Both brackets are true; the narrower one is the answer.
 
-use crate::answer::Answer;
+use crate::math::{Vector, unit};
+use crate::query::answer::Answer;
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, unit};
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Measured, Support};
 

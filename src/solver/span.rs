@@ -9,15 +9,16 @@
 //!
 //! for directions c in R^K, so the same solver answers there, in the same memory.
 
-use crate::answer::{Answer, Outcome, Stop};
 use crate::bounds::Bracket;
+use crate::math::{Vector, norm, unit};
 use crate::plan::expansion::sample;
+use crate::plan::start::Start;
+use crate::polytope::simplex::{Corner, Simplex, Vertex};
 use crate::qset::Gauge;
+use crate::query::answer::{Answer, Outcome, Stop};
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector, norm, unit};
-use crate::simplex::{Corner, Simplex, Vertex};
+use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::start::Start;
 use crate::support::{Failure, Support, total};
 use heapless::Vec;
 use nalgebra::SMatrix;

@@ -12,13 +12,14 @@
 //! of iterations allows. Its bracket is never worse than the one at once. So the first tick should converge, without a limit and to a tighter
 //! tolerance than the others: ticks are answered at once while what the moves have cost fits between the two.
 
-use crate::answer::{Answer, Plan, Stop};
 use crate::bounds::Bracket;
+use crate::math::Vector;
 use crate::plan::shoot::descend;
+use crate::polytope::simplex::Simplex;
 use crate::qset::Gauge;
+use crate::query::answer::{Answer, Plan, Stop};
 use crate::query::{Options, Query};
-use crate::scalar::{Real, Vector};
-use crate::simplex::Simplex;
+use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Support};
 

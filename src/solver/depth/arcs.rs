@@ -9,12 +9,13 @@
 //! s only makes circles of the set's circles up to 4 s times their size.
 
 use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
-use crate::answer::{Answer, Outcome};
+use crate::math::{Vector, unit};
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::scalar::{Real, Vector, unit};
-use crate::sectors::{Search, Spin};
+use crate::query::answer::{Answer, Outcome};
+use crate::scalar::Real;
 use crate::solver::Solver;
+use crate::solver::depth::sectors::{Search, Spin};
 use crate::support::Symmetry;
 
 /// Two axes are as good as one if what they are off is this share of the relative tolerance.

@@ -46,12 +46,13 @@
 use core::cell::RefCell;
 
 use super::{Anchor, Body, Pair};
-use crate::answer::{Answer, Plan};
 use crate::bounds::Bracket;
+use crate::math::{Accumulator, TwoWords, Vector, norm, unit};
+use crate::polytope::simplex::{Edges, MAX_CORNERS, Simplex};
 use crate::polytope::{Facet, Polytope};
 use crate::query::Query;
-use crate::scalar::{Accumulator, Real, TwoWords, Vector, norm, unit};
-use crate::simplex::{Edges, MAX_CORNERS, Simplex};
+use crate::query::answer::{Answer, Plan};
+use crate::scalar::Real;
 use crate::support::{Failure, Support};
 use heapless::Vec;
 
