@@ -29,7 +29,7 @@
 //!
 //! # How it works
 //!
-//! Both sets are known by their support functions only ([`support`], [`qset`]). The solver ([`solver`]) grows a polytope inside A
+//! Both sets are known by their support functions only ([`support`], [`qset`]). The solver ([`Solver`]) grows a polytope inside A
 //! (`plan::expansion`, Algorithm 1 of the paper). The facet that is lowest with respect to Q bounds d from below; the support value along that facet's normal
 //! bounds d from above, since *any* direction does; and the support point, put into the polytope, raises the facet.
 //! It ends when both bounds agree to the tolerance, when a threshold is decided, when arithmetic has nothing left to
@@ -37,7 +37,7 @@
 //!
 //! In six dimensions a polytope outgrows any memory. Then the same expansion goes over all directions cone by cone (`plan::conewise`), in the same
 //! memory, whatever its size. A polytopal Q needs neither: one ray per vertex is a convex problem (`plan::rays`); where a polytope may be
-//! cheaper, the two take turns (`plan::race`). From tick to tick of a control loop the bracket moves along with the set ([`tracker`]). Meshes, which are not
+//! cheaper, the two take turns (`plan::race`). From tick to tick of a control loop the bracket moves along with the set ([`Tracker`]). Meshes, which are not
 //! convex, have a search of their own, and a tracker of their own (`mesh::depth`).
 //!
 //! Three things keep it exact and fast:
@@ -45,12 +45,12 @@
 //! * The **bookkeeping** (`polytope`) is adjacency: what a new point eliminates is found by walking, the new facets'
 //!   neighbours by turning through the eliminated patch, their normals as combinations of two old ones. Rounding can
 //!   make the surface loose, not inconsistent.
-//! * The **bounds** ([`bounds`]) use of that surface only that it is closed and where its vertices lie. The rounding
+//! * The **bounds** (`bounds`) use of that surface only that it is closed and where its vertices lie. The rounding
 //!   margins are derived there.
 //! * **What a query does not need is not done.** Balls swept over a set (spheres, capsules, margins, and the ball that
 //!   rolls inside an ellipsoid) are added at the end, exactly, and where that leaves the cores apart their distance
-//!   (`distance`, GJK) is the whole answer. Bodies that turn about one axis are solved in a plane (`meridian`), those
-//!   that nearly do, or of which one has a corner on the other's axis, sector by sector (`sectors`). Facets above the best upper
+//!   (`plan::distance`, GJK) is the whole answer. Bodies that turn about one axis are solved in a plane (`solver::depth::meridian`), those
+//!   that nearly do, or of which one has a corner on the other's axis, sector by sector (`solver::depth::sectors`). Facets above the best upper
 //!   bound are never queued.
 //!
 //! # The house
@@ -58,23 +58,24 @@
 //! Arrows point down; nobody knows who is above.
 //!
 //! ```text
-//! capi                          C ABI: include/qdist*.h
-//!  grasp  mesh                  contacts, friction, hands: wrench sets; triangle meshes: how far out (features)
-//!  depth  tracker  span  batch  prepare   two bodies in space; warm start; flat sets; many sets; vertex graphs of large hulls
-//!   sectors                     arcs of directions around the axis of a body of revolution
-//!   meridian                    two bodies on one axis
-//!    solver                     which plan, and the answer
-//!     plan                      rays, their race with expansion, expansion (Algorithm 1), conewise expansion
-//!      query                    one query's state: best upper bound, bracket, answer
-//!       polytope  distance      facets, adjacency, queue; nearest point
-//!        start  simplex  bounds  answer   first and small simplices; what certifies the bracket; outcomes
-//!         support  qset         the sets A and Q
-//!          workspace  scalar    memory; f32 and f64
+//! mesh        triangle meshes: how far out (feature)
+//! grasp       contacts, friction, hands: wrench sets (feature)
+//! solver      which plan answers, and what one can ask: depth of bodies, warm start, flat sets, many sets, graphs of large hulls
+//! plan        rays, their race with expansion, expansion (Algorithm 1), conewise expansion, distance
+//! query       one query's state: options, best upper bound, bracket, answer
+//! polytope    vertices, facets, ridges, horizon, queue; small simplices
+//! bounds      what certifies the bracket, and its rounding
+//! qset        the sets Q
+//! support     the sets A: shapes, combinations, hulls
+//! math        vectors, sums in twice the precision
+//! scalar      f32 and f64
 //! ```
+//!
+//! The C layer is a package of its own, `capi`, and stands on all of this. (`tests/house.rs` reads this list, and fails where an arrow points up.)
 //!
 //! # Memory, threads, failure
 //!
-//! All memory is the caller's: a [`Workspace`] in a static or on the stack, or any aligned bytes ([`workspace::place`]). Capacities are run-time numbers,
+//! All memory is the caller's: a [`Workspace`] in a static or on the stack, or any aligned bytes ([`place`]). Capacities are run-time numbers,
 //! so there is one compiled solver per dimension (2 to 6) and scalar. There are no globals; a [`Solver`] is used by
 //! one thread at a time. A support function may fail; a query never does: it returns an [`Outcome`] and a bracket.
 //! A bound that is not known at all is plus or minus the scalar's largest finite number.
@@ -84,7 +85,6 @@
 //! * `std`: square roots from the standard library; `grasp` and `mesh`, which a host has room for.
 //! * `grasp`: contacts, friction and hands as sets.
 //! * `mesh`: triangle meshes, with `std`.
-//! * `capi`: the C functions. `panic-handler`: for the freestanding C library.
 //!
 //! # Sources
 //!
@@ -124,6 +124,7 @@ pub use solver::depth::{Body, BodyError, Depth, Matrix2, Matrix3};
 pub use solver::prepare::{GraphError, HullFacet, hull_facets, prepare_hull};
 pub use solver::warm::Tracker;
 pub use solver::workspace::{Layout, MAX_CAPACITY, Workspace, WorkspaceError, place};
+pub use support::failure::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
 
 /// What the C layer and the tests of this repository stand on beside the interface. No part of it: anything here may change.
 #[doc(hidden)]
@@ -139,15 +140,6 @@ pub mod internal {
     pub use crate::support::load::{alone, one_by_one};
     pub use crate::support::shapes::{check_numbers, check_sizes, near_unit};
 }
-
-/// Failure code: a callback returned a value that is not finite.
-pub const NOT_FINITE: i32 = i32::MIN;
-/// Failure code: nothing that was returned is wrong, but the numbers are so large that arithmetic with them overflows.
-pub const TOO_LARGE: i32 = i32::MIN + 3;
-/// Failure code: a set without end ([`HalfSpace`](support::HalfSpace)) was asked for a farthest point.
-pub const UNBOUNDED: i32 = i32::MIN + 4;
-/// Failure code: an internal set has no points.
-pub(crate) const EMPTY: i32 = i32::MIN + 1;
 
 /// README's examples run as tests.
 #[cfg(all(doctest, feature = "mesh"))]

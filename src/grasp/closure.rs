@@ -19,10 +19,10 @@
 //! candidate is judged by its height, summed in twice the precision. If it is none, the threshold is lowered; at last there is none, and rounding
 //! ends the query.
 
-use crate::Outcome;
 use crate::math::{Accumulator, Vector, norm, unit};
 use crate::qset::Ball;
 use crate::query::Options;
+use crate::query::answer::Outcome;
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Support};

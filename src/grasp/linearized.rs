@@ -35,10 +35,11 @@
 //! ([`opposed_mean`]), and [`min_weight`] its N l.
 
 use super::contact::{Contact, ContactError, Friction, GraspError};
+use super::contribution::Contribution;
 use super::frame::WrenchFrame;
 use super::numbers::usable;
 use super::primitive::frobenius;
-use super::wrench_set::{Contribution, Norm};
+use super::wrench_set::Norm;
 use crate::math::{Vector, norm, unit};
 use crate::qset::Segment;
 use crate::scalar::Real;
@@ -223,7 +224,7 @@ impl<T: Real> Support<T, 6> for PyramidalCone<'_, T> {
     /// # Errors
     /// The empty set has no point.
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
-        self.points.as_ref().ok_or(Failure(crate::EMPTY))?.support(u)
+        self.points.as_ref().ok_or(Failure(crate::support::failure::EMPTY))?.support(u)
     }
     fn extent(&self) -> T {
         self.points.as_ref().map_or(T::zero(), |points| points.extent() + self.rounding)

@@ -112,6 +112,7 @@
 
 mod closure;
 mod contact;
+mod contribution;
 mod finger;
 pub(crate) mod forces;
 mod frame;
@@ -127,6 +128,7 @@ mod wrench_set;
 
 pub use closure::Closure;
 pub use contact::{Contact, ContactError, Friction, GraspError};
+pub use contribution::Contribution;
 pub use finger::{Finger, ForceModel, MAX_CONTACTS, UNSOLVED};
 pub use forces::{ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces};
 pub use frame::WrenchFrame;
@@ -137,4 +139,4 @@ pub use linearized::{Layout, Preset, PyramidalCone, linearized, min_weight, oppo
 pub use numbers::default_tolerance;
 pub use primitive::Primitive;
 pub use span::Subspace;
-pub use wrench_set::{Contribution, Norm, WrenchSet};
+pub use wrench_set::{Norm, WrenchSet};

@@ -3,10 +3,10 @@
 use nalgebra::SMatrix;
 
 use super::contact::{Contact, ContactError};
+use super::contribution::{Contribution, near_unit};
 use super::frame::WrenchFrame;
 use super::numbers::usable;
 use super::svd::dot;
-use super::wrench_set::Contribution;
 use crate::math::{Vector, norm, unit};
 use crate::scalar::Real;
 use crate::support::{Failure, Support};
@@ -149,7 +149,7 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
     /// The empty set has no point.
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
         if self.is_empty() {
-            return Err(Failure(crate::EMPTY));
+            return Err(Failure(crate::support::failure::EMPTY));
         }
         Ok(self.point(&self.farthest(&near_unit(u))))
     }
@@ -202,15 +202,6 @@ impl<T: Real> Contribution<T> for Primitive<T> {
             candidates.find(|(own, taken)| !**taken && same(own)).map(|(_, taken)| *taken = true).is_some()
         })
     }
-}
-
-/// A positive multiple of `u` that is not far from unit length; `u` itself if it is.
-#[inline]
-pub(super) fn near_unit<T: Real>(u: &Vector<T, 6>) -> Vector<T, 6> {
-    let far = T::count(16);
-    let largest = u.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
-    // Divided by, not multiplied with the reciprocal: that overflows for subnormal numbers.
-    if largest < far && largest * far > T::one() || !(largest > T::zero()) { *u } else { u.map(|x| x / largest) }
 }
 
 /// Root of the sum of squares, column by column so that small squares are not lost.

@@ -95,7 +95,7 @@ impl<T: Real, const N: usize> Cloud<'_, T, N> {
                 best = Some((height, vertex));
             }
         }
-        let (_, vertex) = best.ok_or(Failure(crate::EMPTY))?;
+        let (_, vertex) = best.ok_or(Failure(crate::support::failure::EMPTY))?;
         Ok(Vertex { point: vertex.point - self.origin, witness: vertex.witness })
     }
 }

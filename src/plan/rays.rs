@@ -198,7 +198,7 @@ fn next_target<T: Real, const N: usize>(
         *index += 1;
         query.work.add(1);
         if !finite(&target) {
-            return Err(Failure(crate::NOT_FINITE));
+            return Err(Failure(crate::support::failure::NOT_FINITE));
         }
         if target.iter().any(|&x| x != T::zero()) {
             return Ok(Some(target));

@@ -81,7 +81,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             stop
         } else {
             witness = Simplex::new(Vertex::empty());
-            Stop::Failed(crate::NOT_FINITE)
+            Stop::Failed(crate::support::failure::NOT_FINITE)
         };
         let upper = self.upper();
         let mut lower = self.floored(lower);

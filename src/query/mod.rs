@@ -144,7 +144,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let inner = if ball.is_some() { T::zero() } else { q.inner_radius() };
         let sane = are_lengths(&[radius, extent, support_error, gauge_error, inner]);
         let sane = sane && per_ball.finite() && per_ball > T::zero();
-        let checked = if sane { Ok(()) } else { Err(Failure(crate::NOT_FINITE)) };
+        let checked = if sane { Ok(()) } else { Err(Failure(crate::support::failure::NOT_FINITE)) };
         // (The answer to a query that is not run is made of them too.)
         let [radius, extent, support_error] = if sane { [radius, extent, support_error] } else { [T::zero(); 3] };
         let query = Query {
@@ -306,7 +306,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     fn see(&mut self, point: &Vector<T, N>) -> Result<(), Failure> {
         let squared = point.dot(point);
         if !squared.finite() {
-            return Err(Failure(if finite(point) { crate::TOO_LARGE } else { crate::NOT_FINITE }));
+            return Err(Failure(if finite(point) {
+                crate::support::failure::TOO_LARGE
+            } else {
+                crate::support::failure::NOT_FINITE
+            }));
         }
         if squared > self.reach * self.reach {
             self.reach = squared.root();
@@ -384,7 +388,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             Some(radius) => Ok(radius),
             None => {
                 let value = self.q.value(direction)?;
-                if value.finite() && value >= T::zero() { Ok(value) } else { Err(Failure(crate::NOT_FINITE)) }
+                if value.finite() && value >= T::zero() {
+                    Ok(value)
+                } else {
+                    Err(Failure(crate::support::failure::NOT_FINITE))
+                }
             }
         }
     }

@@ -251,7 +251,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let near = nearest(
             first,
             axes.as_ref(),
-            |u| shared.try_borrow_mut().map_err(|_| Failure(crate::EMPTY))?.support(u).map(|(vertex, _)| vertex),
+            |u| {
+                shared
+                    .try_borrow_mut()
+                    .map_err(|_| Failure(crate::support::failure::EMPTY))?
+                    .support(u)
+                    .map(|(vertex, _)| vertex)
+            },
             |simplex, distance| {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
                 let bracket = Bracket { lower: query.lower_from_simplex(simplex, distance), upper: query.upper() };

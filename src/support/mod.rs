@@ -20,8 +20,6 @@
 //!
 //! The solver's bracket rests on these two lines and on nothing else.
 
-use core::fmt;
-
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
 pub use crate::solver::depth::Turning;
@@ -29,6 +27,7 @@ pub use crate::solver::depth::half_space::HalfSpace;
 use crate::solver::depth::half_space::Unbounded;
 
 mod combine;
+pub(crate) mod failure;
 mod graph;
 pub(crate) mod hull;
 pub(crate) mod load;
@@ -37,29 +36,13 @@ mod solids;
 
 pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
 pub(crate) use combine::{Measured, total};
+pub use failure::Failure;
 pub(crate) use graph::{GraphWriter, SEEDS};
 pub use graph::{HullGraph, Word, graph_len, large_graph_len};
 pub use hull::{Hull, Points};
 pub(crate) use load::one_by_one;
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
 pub use solids::{Capsule, Cone, Cylinder};
-
-/// A support function gave up; the number is the caller's own code (never zero).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Failure(pub i32);
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            crate::NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
-            crate::TOO_LARGE => f.write_str("the numbers are so large that arithmetic with them overflows"),
-            crate::UNBOUNDED => f.write_str("a half space was asked for a farthest point"),
-            code => write!(f, "a support or gauge function failed with code {code}"),
-        }
-    }
-}
-
-impl core::error::Error for Failure {}
 
 /// Rotations that leave a set in R^3 unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +58,7 @@ pub enum Symmetry {
 /// A compact convex set `core + radius * ball` in R^N, given by its support mapping.
 ///
 /// Every number is checked: a query of a set that returns a point, witness or center that is not finite, or states a length that is negative or
-/// not finite, ends with outcome `SupportFailed`, code [`NOT_FINITE`](crate::NOT_FINITE) and a bracket that says nothing false.
+/// not finite, ends with outcome `SupportFailed`, code [`NOT_FINITE`](crate::support::failure::NOT_FINITE) and a bracket that says nothing false.
 ///
 /// Implement it for your own shapes: only [`support`](Support::support) is required. All lengths are in
 /// the caller's unit; the solver is invariant to it.

@@ -8,13 +8,14 @@ pub use face::MAX_CONTACTS;
 use nalgebra::SMatrix;
 
 use super::contact::{ContactError, GraspError};
+use super::contribution::Contribution;
+use super::contribution::near_unit;
 use super::frame::WrenchFrame;
 use super::hand::{ActiveForces, HandContact};
 use super::jacobian::MAX_JOINTS;
 use super::numbers::{check_tolerance, usable};
-use super::primitive::{frobenius, near_unit};
+use super::primitive::frobenius;
 use super::svd::Triangle;
-use super::wrench_set::Contribution;
 use crate::math::{Vector, norm};
 use crate::scalar::Real;
 use crate::support::{Failure, Support};

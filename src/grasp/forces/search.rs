@@ -1,7 +1,8 @@
 //! One search for contact forces: scales the question, runs the linear program until something is decided, and makes shares, a bracket and an
 //! outcome of what it knows then. Questions and answers are those of [`forces`](super::forces).
 
-use super::super::wrench_set::{Contribution, Norm, WrenchSet};
+use super::super::contribution::Contribution;
+use super::super::wrench_set::{Norm, WrenchSet};
 use super::program::Program;
 use super::{ForceOptions, ForceOutcome, Forces, precision};
 use crate::math::{Vector, finite, norm, unit};
@@ -51,7 +52,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
                 axis[i] = sign;
                 let value = set.support(&axis)?.dot(&axis);
                 if !value.finite() {
-                    return Err(Failure(crate::NOT_FINITE));
+                    return Err(Failure(crate::support::failure::NOT_FINITE));
                 }
                 reach[i] = reach[i].at_least(value);
             }
@@ -97,7 +98,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
     fn point(&self, direction: &Vector<T, 6>) -> Result<Vertex<T, 6>, Failure> {
         let point = self.set.support(direction)?;
         if !finite(&point) {
-            return Err(Failure(crate::NOT_FINITE));
+            return Err(Failure(crate::support::failure::NOT_FINITE));
         }
         Ok(Vertex { point: point.component_div(&self.rows), witness: *direction })
     }

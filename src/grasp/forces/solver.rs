@@ -24,9 +24,10 @@
 //!   contributions added to h_W(u) and that of u.w taken away, where w is what the shares exert. How far that is from equilibrium is
 //!   reported, too.
 
+use super::super::contribution::Contribution;
 use super::super::finger::{Finger, MAX_CONTACTS};
 use super::super::numbers::usable;
-use super::super::wrench_set::{Contribution, WrenchSet};
+use super::super::wrench_set::WrenchSet;
 use super::search::Search;
 use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
 use crate::math::{Vector, norm, unit};

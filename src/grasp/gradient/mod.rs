@@ -24,6 +24,7 @@
 //! has full row rank. Where Delta is 0 the disc opens like a square root, and nothing but d itself is known.
 
 mod newton;
+mod problem;
 mod refine;
 mod search;
 mod ties;

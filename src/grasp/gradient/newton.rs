@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use super::super::wrench_set::Norm;
-use super::search::Problem;
+use super::problem::Problem;
 use super::ties::{Kind, Matrix6, Part, TIES, Ties, Vector6, is_tip, is_weighed};
 use crate::math::norm;
 use crate::scalar::Real;

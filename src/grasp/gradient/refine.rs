@@ -29,7 +29,7 @@
 use super::super::numbers::default_tolerance;
 use super::super::span::Subspace;
 use super::super::wrench_set::{Norm, WrenchSet};
-use super::search::Problem;
+use super::problem::Problem;
 use super::ties::{Kind, Part, Tie, Ties, tip};
 use crate::math::{Vector, norm};
 use crate::qset::Gauge;

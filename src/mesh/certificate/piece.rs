@@ -7,9 +7,10 @@
 use super::polytope::Plane;
 use super::solid::Solid;
 use crate::qset::Ball;
+use crate::query::Options;
 use crate::scalar::Real;
+use crate::solver::workspace::Workspace;
 use crate::support::{Points, Support};
-use crate::{Options, Workspace};
 use nalgebra::Vector3;
 
 /// A convex polytope inside a solid.

@@ -8,9 +8,11 @@
 use super::piece::Piece;
 use super::sigma::{Lever, Separation, selected};
 use super::{Effort, Pieces};
+use crate::query::Options;
 use crate::scalar::Real;
+use crate::solver::depth::Body;
+use crate::solver::workspace::Workspace;
 use crate::support::Points;
-use crate::{Body, Options, Workspace};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 /// What is maximised over the pairs.

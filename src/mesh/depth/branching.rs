@@ -10,7 +10,7 @@
 use super::Scratch;
 use super::contact_space::Primitive;
 use super::search::Search;
-use super::walk::{corrected_step, see_space};
+use super::step::{corrected_step, see_space};
 use crate::mesh::optimize::{Constraint, Twist};
 use nalgebra::Isometry3;
 

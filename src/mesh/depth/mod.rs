@@ -38,11 +38,13 @@
 mod branching;
 mod contact_space;
 mod finish;
+mod order;
 mod plan;
 mod random;
 mod sampling;
 mod search;
 mod seeds;
+mod step;
 mod tracker;
 mod translation;
 mod walk;
@@ -206,7 +208,7 @@ impl<'m> DepthSolver<'m> {
                 space: ContactSpace::default(),
                 branches: Branches::default(),
                 constraints: Vec::new(),
-                memory: StepMemory::new(walk::CONTACTS),
+                memory: StepMemory::new(step::CONTACTS),
                 walked: Vec::new(),
             },
         }

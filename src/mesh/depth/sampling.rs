@@ -5,7 +5,7 @@
 //! outside of the contact space, with its unions and intersections, are discarded; of the others, the one nearest to the start is the step.
 
 use super::search::Search;
-use super::walk::see_space;
+use super::step::see_space;
 use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 

@@ -1,11 +1,6 @@
-//! The state of one query: the best pose so far, the budget, and the order of things.
+//! The state of one query: the best pose so far, the bounds, and the budget.
 
-use super::finish::finish;
-use super::plan::Plan;
 use super::random::Random;
-use super::seeds::pushout;
-use super::seeds::rays::{self, Seed};
-use super::walk::{Bounds, CONTACTS, walk};
 use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress, Scratch, Walk, Watch};
 use crate::mesh::certificate::Certifier;
 use crate::mesh::metric::{Certificate, Metric, Sigma};
@@ -13,15 +8,12 @@ use crate::mesh::pose::{is_usable, normalised};
 use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::{Isometry3, Translation3};
 
-/// Walks whose ends are nearer to the best pose than this fraction of its value have found it.
-const SAME: f64 = 0.05;
-
 pub(super) struct Search<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
     pub scratch: &'s mut Scratch,
     certifier: &'s mut Certifier,
-    a: &'m Model,
-    b: &'m Model,
+    pub a: &'m Model,
+    pub b: &'m Model,
     pub metric: &'s dyn Metric,
     /// A's object norm, if it has one.
     pub sigma: Option<&'m Sigma>,
@@ -40,7 +32,7 @@ pub(super) struct Search<'s, 'm, 'w> {
     /// How the walks step.
     pub walk_kind: Walk,
     /// Share of the work that is done.
-    fraction: f64,
+    pub fraction: f64,
     stop: Option<Outcome>,
     before: Counters,
 }
@@ -82,100 +74,6 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
             stop: None,
             before,
         }
-    }
-
-    pub fn run(mut self) -> MeshDepth {
-        if !self.is_valid() {
-            return self.answer(Outcome::Invalid);
-        }
-        if !self.pair.collides(&self.start) {
-            self.upper = 0.0;
-            let distance = self.pair.distance(&self.start);
-            return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
-        }
-        self.lower = self.certify();
-        let plan = Plan::new(self.options.effort, self.a, self.b, self.metric.certificate());
-        self.leave_by_the_proof();
-        let escape = rays::escape(&mut self);
-        for pose in self.options.poses {
-            self.walk_from(pose, &plan);
-        }
-        if let Some(seed) = escape {
-            self.begin(&plan, seed);
-        }
-        // Dear, and of use where rays have missed a narrow passage.
-        if self.options.push_out
-            && self.may_be_much_less()
-            && self.goes_on()
-            && let Some(seed) = pushout::push_out(&mut self, plan.work)
-        {
-            self.walk(&seed, plan.gain, f64::INFINITY);
-        }
-        for round in 1..plan.rounds {
-            if !self.options.rays
-                || self.upper == f64::INFINITY
-                || !plan.patience.goes_on(round, self.lower, self.upper, self.returns())
-            {
-                break;
-            }
-            let best = Seed { pose: self.pose, value: self.upper };
-            self.explore(&plan, round, &best);
-        }
-        finish(&mut self, &plan);
-        self.answer(self.outcome())
-    }
-
-    /// Whether the lower bound leaves room for a far better pose. The object norm's is wider in any case.
-    fn may_be_much_less(&self) -> bool {
-        let near = match self.metric.certificate() {
-            Certificate::Disp => 1.15,
-            Certificate::SqrtSigma | Certificate::None => 1.3,
-        };
-        self.upper > near * self.lower
-    }
-
-    /// The first round. Where translations and the lower bound say nearly the same, no ray that turns is cast.
-    fn begin(&mut self, plan: &Plan, escape: Seed) {
-        let Some(near) = plan.translations_suffice.filter(|_| self.options.rays && self.lower > 0.0) else {
-            return self.explore(plan, 0, &escape);
-        };
-        let translations = rays::Plan { screws: 0, seeds: 1, ..plan.rays };
-        for seed in rays::cast(self, &translations, 0, &escape) {
-            self.walk(&seed.pose, plan.coarse, f64::INFINITY);
-        }
-        if self.upper.is_finite() && self.upper > near * self.lower {
-            let best = Seed { pose: self.pose, value: self.upper };
-            self.explore(plan, 0, &best);
-        }
-    }
-
-    /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
-    fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
-        let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
-        // Where a walk has begun or ended, none begins.
-        let walked = self.scratch.walked.iter().flatten().any(|pose| *pose == known.pose);
-        let seeds = seeds.iter().filter(|seed| !walked || seed.pose != known.pose);
-        for (k, seed) in seeds.enumerate() {
-            self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
-            self.walk(&seed.pose, plan.coarse, self.upper * plan.hope);
-            if plan.patience.is_satisfied(self.lower, self.upper, self.returns()) {
-                break;
-            }
-        }
-    }
-
-    /// Walks from a free pose, and notes where that began and ended.
-    pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
-        if self.goes_on() {
-            let end = walk(self, from, &Bounds { gain, hopeless });
-            self.scratch.walked.push([*from, end]);
-        }
-    }
-
-    /// How many walks have ended at the best pose.
-    fn returns(&self) -> usize {
-        let is_at_best = |end: &Isometry3<f64>| self.metric.distance(&self.pose, end) < SAME * self.upper;
-        self.scratch.walked.iter().filter(|[_, end]| is_at_best(end)).count()
     }
 
     /// Whether the query's pose and options are proper numbers.
@@ -247,15 +145,6 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         self.stop.is_none()
     }
 
-    /// Keeps as many contacts as a step can take, the nearest.
-    pub fn limit_contacts(&mut self) {
-        let contacts = &mut self.scratch.contacts;
-        if contacts.len() > CONTACTS {
-            contacts.sort_unstable_by(|x, y| x.gap.abs().total_cmp(&y.gap.abs()));
-            contacts.truncate(CONTACTS);
-        }
-    }
-
     pub fn distance(&self, pose: &Isometry3<f64>) -> f64 {
         self.metric.distance(&self.start, pose)
     }
@@ -266,18 +155,6 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         if value < self.upper {
             self.upper = value;
             self.pose = *pose;
-        }
-    }
-
-    /// Walks from the caller's pose, or from where pushing out from there leads.
-    fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
-        if !is_usable(pose) || !self.goes_on() {
-            return;
-        }
-        let pose = normalised(pose);
-        let seed = if self.pair.collides(&pose) { pushout::push_out_from(self, &pose, plan.work) } else { Some(pose) };
-        if let Some(seed) = seed {
-            self.walk(&seed, plan.gain, f64::INFINITY);
         }
     }
 
@@ -293,7 +170,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
 
     /// The translation that parts what proves the lower bound: of two convex bodies the best pose there is. A little farther, since
     /// what just touches collides.
-    fn leave_by_the_proof(&mut self) {
+    pub fn leave_by_the_proof(&mut self) {
         let Some(out) = self.certifier.way_out.take() else { return };
         let convex = |model: &Model| model.pieces().is_some_and(|pieces| pieces.pieces().len() == 1);
         let tries = if convex(self.a) && convex(self.b) { 4 } else { 1 };

@@ -17,13 +17,12 @@
 //! are out of sight would stop the next step.
 
 use super::branching::branched_step;
-use super::contact_space::Primitive;
 use super::sampling::sampled_step;
 use super::search::Search;
+use super::step::{corrected_step, see};
 use super::translation::Translation;
 use super::{Scratch, Walk};
-use crate::mesh::metric::Metric;
-use crate::mesh::optimize::{Constraint, StepOptions, Twist};
+use crate::mesh::optimize::{Constraint, Twist};
 use nalgebra::Isometry3;
 
 /// The first trust region, in diagonals of A.
@@ -34,17 +33,10 @@ const MARGIN: f64 = 0.003;
 const CLEARANCE: f64 = 3e-3;
 /// A walk has converged when its trust region is this small, in diagonals of A.
 pub const LEAST: f64 = 2e-5;
-/// Contacts are looked for that arise when A turns by this much.
-const MOST_TILT: f64 = 0.1;
-/// Second-order corrections of a step at most.
-const CORRECTIONS: usize = 2;
 /// Iterations at most.
 pub const ITERATIONS: usize = 30;
 /// The least gain of an iteration while A only translates: what follows gains the rest.
 const TRANSLATION_GAIN: f64 = 1e-3;
-/// Contacts that a step can take; of more, the nearest.
-pub const CONTACTS: usize = 256;
-
 /// How far a walk goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
@@ -168,27 +160,6 @@ fn step(
     None
 }
 
-/// Looks for contacts at a pose, with those that a step may bring about.
-pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) {
-    let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
-    search.pair.contacts_when_tilted(pose, margin, tilt, &mut search.scratch.contacts);
-    search.limit_contacts();
-    let (a, b) = (search.pair.a(), search.pair.b());
-    let Scratch { contacts, primitives, .. } = &mut *search.scratch;
-    primitives.clear();
-    primitives.extend(contacts.iter().map(|c| Primitive::new(c, a, b, pose)));
-}
-
-/// The same with what they say of unions. Returns the sine of the angle that A may turn by.
-pub fn see_space(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) -> f64 {
-    see(search, pose, trust, margin);
-    let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
-    let meshes = (search.pair.a(), search.pair.b());
-    let Scratch { contacts, space, .. } = &mut *search.scratch;
-    space.set(contacts, meshes, pose, margin, tilt);
-    tilt
-}
-
 /// The best motion under the contacts, each as the plane across its gap.
 fn linear_step(
     search: &mut Search,
@@ -214,33 +185,12 @@ fn linear_step(
     corrected_step(search, metric, pose, trust, clearance)
 }
 
-/// The best motion under the noted constraints. What the linearisation leaves out is looked up in the primitive constraints
-/// themselves, and the program is solved again with that much less room (a second-order correction).
-pub fn corrected_step(
-    search: &mut Search,
-    metric: &dyn Metric,
-    pose: &Isometry3<f64>,
-    trust: f64,
-    clearance: f64,
-) -> Option<Twist> {
-    let Scratch { primitives, constraints, memory, .. } = &mut *search.scratch;
-    let options = StepOptions { trust, tolerance: 1e-3 };
-    let back = pose.inverse();
-    let mut twist = metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
-    for _ in 0..CORRECTIONS {
-        let motion = twist.applied(pose) * back;
-        let mut held = true;
-        for (primitive, constraint) in primitives.iter().zip(constraints.iter_mut()) {
-            let gap = primitive.gap(&motion);
-            if gap < 0.5 * clearance {
-                constraint.gap -= clearance - gap;
-                held = false;
-            }
+impl Search<'_, '_, '_> {
+    /// Walks from a free pose, and notes where that began and ended.
+    pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
+        if self.goes_on() {
+            let end = walk(self, from, &Bounds { gain, hopeless });
+            self.scratch.walked.push([*from, end]);
         }
-        if held {
-            break;
-        }
-        twist = metric.step(&search.start, pose, constraints, &options, memory).ok()?.twist;
     }
-    Some(twist)
 }

@@ -10,7 +10,8 @@
 use super::super::{EdgeKind, Feature, Mesh};
 use super::Pair;
 use super::candidate::{Candidate, candidates};
-use super::relative::{Relative, walk_culled};
+use super::pairs::walk_culled;
+use super::relative::Relative;
 use crate::mesh::pose::is_usable;
 use crate::mesh::triangle::plane_gap_squared;
 use nalgebra::{Isometry3, Point3, Vector3};

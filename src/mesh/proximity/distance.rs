@@ -4,8 +4,9 @@
 use super::super::Feature;
 use super::Pair;
 use super::candidate::{Candidate, any, nearest};
+use super::pairs::{open, walk};
 use super::project::project;
-use super::relative::{Relative, open, walk};
+use super::relative::Relative;
 use crate::mesh::pose::is_usable;
 use crate::mesh::triangle::{apart, plane_gap_squared};
 use nalgebra::{Isometry3, Point3};

@@ -27,6 +27,7 @@ mod contact;
 mod distance;
 mod inside;
 mod lanes;
+mod pairs;
 mod project;
 mod relative;
 mod screw;
@@ -40,7 +41,8 @@ use super::pose::is_usable;
 use super::triangle;
 use inside::is_inside;
 use nalgebra::Isometry3;
-use relative::{Relative, walk};
+use pairs::walk;
+use relative::Relative;
 use std::ops::ControlFlow;
 
 /// How many queries a pair has answered.

@@ -38,9 +38,9 @@ use crate::math::{Accumulator, Vector, finite, norm};
 use crate::query::Options;
 use crate::query::answer::{Outcome, Stop};
 use crate::scalar::Real;
+use crate::support::failure::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
 use crate::support::shapes::{check_numbers, largest};
 use crate::support::{Failure, ShapeError, Support};
-use crate::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
 use nalgebra::SMatrix;
 
 /// The half space { x : normal.x <= offset }; in the plane, a half plane. The normal points out of it.

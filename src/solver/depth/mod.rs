@@ -20,8 +20,8 @@ use crate::query::answer::{Answer, Outcome};
 use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
+use crate::support::failure::{NOT_FINITE, TOO_LARGE};
 use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
-use crate::{NOT_FINITE, TOO_LARGE};
 use nalgebra::SMatrix;
 
 mod arcs;

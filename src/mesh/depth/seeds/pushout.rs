@@ -6,6 +6,7 @@
 //! to a value that says that this is no way out.
 
 use super::super::search::Search;
+use super::super::step::limit;
 use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{Constraint, StepOptions};
 use nalgebra::Isometry3;
@@ -55,7 +56,7 @@ pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>, work: usize) ->
                 return None;
             }
         }
-        search.limit_contacts();
+        limit(&mut search.scratch.contacts);
         let scratch = &mut *search.scratch;
         if !scratch.contacts.iter().any(|c| c.gap < 0.0) {
             if scratch.contacts.is_empty() && reach >= most {
