@@ -6,7 +6,7 @@ use crate::support::{Failure, Support};
 
 /// What one contact, or one finger, contributes to a wrench set: W_i, a compact convex set of wrenches (paper, eq. 6), by its support function.
 ///
-/// [`Primitive`] is the one of a single contact with a friction cone, [`Finger`](super::Finger) that of contacts with joints. Implement it for a model of your own: the [`Support`] is enough.
+/// [`Primitive`](super::Primitive) is the one of a single contact with a friction cone, [`Finger`](super::Finger) that of contacts with joints. Implement it for a model of your own: the [`Support`] is enough.
 /// Its [`radius`](Support::radius) must be 0.
 pub trait Contribution<T: Real>: Support<T, 6> {
     /// h_i(u) and the point, if h_i(u) > `floor`; `u` is near unit length. The value is within [`error`](Support::error) |u| of the true one.

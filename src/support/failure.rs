@@ -23,7 +23,7 @@ impl core::error::Error for Failure {}
 pub const NOT_FINITE: i32 = i32::MIN;
 /// Failure code: nothing that was returned is wrong, but the numbers are so large that arithmetic with them overflows.
 pub const TOO_LARGE: i32 = i32::MIN + 3;
-/// Failure code: a set without end ([`HalfSpace`](support::HalfSpace)) was asked for a farthest point.
+/// Failure code: a set without end ([`HalfSpace`](crate::support::HalfSpace)) was asked for a farthest point.
 pub const UNBOUNDED: i32 = i32::MIN + 4;
 /// Failure code: an internal set has no points.
 pub(crate) const EMPTY: i32 = i32::MIN + 1;
