@@ -1,0 +1,26 @@
+//! Sets, bodies and solvers: brackets against closed forms, other libraries' cases, properties, rounding margins, and what was found, by name.
+
+#[macro_use]
+#[path = "../common/mod.rs"]
+mod common;
+
+mod arcs;
+mod brackets;
+mod cases;
+mod certificates;
+mod closed_forms;
+mod errors;
+mod exact_margins;
+mod half_spaces;
+mod house;
+mod hulls;
+mod invariance;
+mod joins;
+mod margins;
+mod plane;
+mod plans;
+mod polytopes;
+mod regressions;
+mod shallow;
+mod shortcuts;
+mod warm_and_flat;

@@ -1,0 +1,205 @@
+//! Shallow contact in single precision: bodies of size 1 whose depth is a thousand roundoffs of their size. What the numbers given mean exactly is
+//! computed in double precision.
+
+use crate::common;
+
+use common::dice::Dice;
+use nalgebra::{Rotation2, Rotation3, SMatrix, Unit, Vector2, Vector3};
+use qdist::support::{BoxShape, Capsule, Points, Sphere, Support};
+use qdist::{Body, Options, Outcome, Workspace};
+
+type Pose = (SMatrix<f32, 3, 3>, Vector3<f32>);
+
+/// The numbers of a shape, as they are given.
+enum Numbers {
+    Box(Vector3<f32>),
+    Hull(Vec<[f32; 3]>),
+    Capsule(f32, f32),
+}
+
+impl Numbers {
+    fn random(rng: &mut Dice, kind: usize) -> Self {
+        match kind {
+            0 => Numbers::Box(Vector3::from_fn(|_, _| rng.range(0.3, 1.0) as f32)),
+            1 => {
+                let n = 4 + rng.below(36);
+                Numbers::Hull((0..n).map(|_| direction(rng).map(|x| x as f32).into()).collect())
+            }
+            2 => Numbers::Capsule(rng.range(0.0, 0.01) as f32, rng.range(0.3, 1.0) as f32),
+            3 => Numbers::Capsule(rng.range(0.2, 1.0) as f32, rng.range(0.3, 1.0) as f32),
+            _ => Numbers::Capsule(rng.range(0.2, 1.0) as f32, 0.0),
+        }
+    }
+
+    /// Calls with the shape in either precision.
+    fn both<R>(&self, scale: f32, act: impl FnOnce(&dyn Support<f32, 3>, &dyn Support<f64, 3>) -> R) -> R {
+        match self {
+            Numbers::Box(half) => {
+                let half = half * scale;
+                act(&BoxShape::new(half).unwrap(), &BoxShape::new(half.map(f64::from)).unwrap())
+            }
+            Numbers::Hull(points) => {
+                let points: Vec<[f32; 3]> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+                let wide: Vec<[f64; 3]> = points.iter().map(|p| p.map(f64::from)).collect();
+                act(&Points::new(&points).unwrap(), &Points::new(&wide).unwrap())
+            }
+            &Numbers::Capsule(radius, half) => {
+                let (radius, half) = (radius * scale, half * scale);
+                act(&Capsule::new(radius, half).unwrap(), &Capsule::new(f64::from(radius), f64::from(half)).unwrap())
+            }
+        }
+    }
+}
+
+fn direction(rng: &mut Dice) -> Vector3<f64> {
+    loop {
+        let v = Vector3::from_fn(|_, _| rng.signed());
+        if v.norm() > 0.1 && v.norm() < 1.0 {
+            return v.normalize();
+        }
+    }
+}
+
+fn pose(rng: &mut Dice) -> Pose {
+    let rotation = Rotation3::from_axis_angle(&Unit::new_normalize(direction(rng)), rng.range(0.0, 3.0));
+    (rotation.matrix().map(|x| x as f32), Vector3::zeros())
+}
+
+fn exact(a: &dyn Support<f64, 3>, at: &Pose, b: &dyn Support<f64, 3>, bt: &Pose) -> (f64, f64) {
+    let place = |set, pose: &Pose| Body::new(set, pose.0.map(f64::from), pose.1.map(f64::from)).map_err(drop);
+    let (a, b) = (place(a, at).unwrap(), place(b, bt).unwrap());
+    let mut memory = Workspace::<f64, 3, 512, 1024>::new();
+    let depth = memory.solver().depth(&a, &b, &Options { relative: 1e-10, ..Options::default() });
+    (depth.lower, depth.upper)
+}
+
+/// Of contacts of polyhedra of this size, so far from the origin of the world: how many were tried, and how many have a bracket as narrow as asked for.
+/// All must be true.
+fn converged(count: usize, scale: f32, offset: f32, depths: std::ops::Range<f64>) -> (usize, usize) {
+    let mut rng = Dice::new(7);
+    let (mut tried, mut met) = (0, 0);
+    for number in 0..count {
+        // (Two thin capsules have no cores to speak of, and cross in a point.)
+        let kinds = [0, 1, 3, 4, 0, 1];
+        let (first, second) = (Numbers::random(&mut rng, kinds[number % 6]), Numbers::random(&mut rng, number / 6 % 5));
+        let (mut at, mut bt) = (pose(&mut rng), pose(&mut rng));
+        at.1 = direction(&mut rng).map(|x| (x as f32) * offset * scale);
+        let (along, wanted) = (direction(&mut rng), f64::from(scale) * rng.range(depths.start, depths.end));
+        first.both(scale, |a, wide_a| {
+            second.both(scale, |b, wide_b| {
+                // Moved along until the depth is about what is wanted.
+                let at_distance = |t: f64| at.1 + (along * t).map(|x| x as f32);
+                let (mut near, mut far) = (0.0, 4.0 * f64::from(scale));
+                for _ in 0..60 {
+                    let middle = (near + far) / 2.0;
+                    bt.1 = at_distance(middle);
+                    if exact(wide_a, &at, wide_b, &bt).0 > wanted { near = middle } else { far = middle }
+                }
+                bt.1 = at_distance(near);
+                let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
+                if lower < f64::from(scale) * depths.start {
+                    return; // Not so deep anywhere.
+                }
+                tried += 1;
+                let (body_a, body_b) = (Body::new(a, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
+                let mut memory = Workspace::<f32, 3, 64, 128>::new();
+                let depth = memory.solver().depth(&body_a, &body_b, &Options::default());
+                let (low, high) = (f64::from(depth.lower), f64::from(depth.upper));
+                assert!(low <= upper && lower <= high, "{number}: [{low}, {high}] for [{lower}, {upper}]");
+                met += usize::from(depth.outcome == Outcome::Converged);
+                if depth.outcome != Outcome::Converged {
+                    println!(
+                        "{number}: {:?} [{low:e}, {high:e}] {:e} for {lower:e}, {} {}",
+                        depth.outcome,
+                        high - low,
+                        depth.vertices,
+                        depth.facets
+                    );
+                } else {
+                    assert!(high - low <= 1e-4 * low, "{number}: [{low}, {high}]");
+                }
+            });
+        });
+    }
+    (tried, met)
+}
+
+#[test]
+fn shallow_contacts_of_polyhedra_converge_in_f32() {
+    let (tried, met) = converged(300, 1.0, 0.0, 1e-3..1e-2);
+    assert!(tried > 280 && met == tried, "{met} of {tried}");
+}
+
+#[test]
+fn in_any_unit() {
+    for scale in [1e-12, 1e-4, 3e3, 1e12] {
+        let (tried, met) = converged(60, scale, 0.0, 1e-3..1e-2);
+        assert!(tried > 50 && met == tried, "{met} of {tried} at {scale}");
+    }
+}
+
+#[test]
+fn anywhere_in_the_world() {
+    // A position of 100 is a number that is known to 4e-6; what it is, it is exactly.
+    for offset in [10.0, 100.0] {
+        let (tried, met) = converged(60, 1.0, offset, 1e-3..1e-2);
+        assert!(tried > 50 && met == tried, "{met} of {tried} at {offset}");
+    }
+}
+
+#[test]
+fn polygons_in_the_plane() {
+    let mut rng = Dice::new(11);
+    for number in 0..200 {
+        let half = |rng: &mut Dice| Vector2::from_fn(|_, _| rng.range(0.3, 1.0) as f32);
+        let (a, b) = (half(&mut rng), half(&mut rng));
+        let turn = |rng: &mut Dice| Rotation2::new(rng.range(0.0, 6.0)).matrix().map(|x| x as f32);
+        let (turn_a, turn_b) = (turn(&mut rng), turn(&mut rng));
+        let along = Rotation2::new(rng.range(0.0, 6.0)) * Vector2::x();
+        let depth = |t: f64| {
+            let boxes = (BoxShape::new(a.map(f64::from)).unwrap(), BoxShape::new(b.map(f64::from)).unwrap());
+            let at = (along * t).map(|x| f64::from(x as f32));
+            let body_a = Body::new(&boxes.0, turn_a.map(f64::from), Vector2::zeros()).unwrap();
+            let body_b = Body::new(&boxes.1, turn_b.map(f64::from), at).unwrap();
+            Workspace::<f64, 2, 16, 16>::new().solver().depth(&body_a, &body_b, &Options::default())
+        };
+        let (mut near, mut far) = (0.0, 4.0);
+        for _ in 0..60 {
+            let middle = (near + far) / 2.0;
+            if depth(middle).lower > 2e-3 { near = middle } else { far = middle }
+        }
+        let truth = depth(near);
+        let boxes = (BoxShape::new(a).unwrap(), BoxShape::new(b).unwrap());
+        let body_a = Body::new(&boxes.0, turn_a, Vector2::zeros()).unwrap();
+        let body_b = Body::new(&boxes.1, turn_b, (along * near).map(|x| x as f32)).unwrap();
+        let found = Workspace::<f32, 2, 16, 16>::new().solver().depth(&body_a, &body_b, &Options::default());
+        let (low, high) = (f64::from(found.lower), f64::from(found.upper));
+        assert!(low <= truth.upper && truth.lower <= high, "{number}: {found:?} for {truth:?}");
+        assert_eq!(found.outcome, Outcome::Converged, "{number}: {found:?} for {truth:?}");
+    }
+}
+
+/// The disc's nearest point of the box is an end of a short side; rounding tilts that side, and the foot falls inside of it. Levelled, the side's
+/// line is nearer.
+#[test]
+fn the_end_of_a_short_side() {
+    let mut rng = Dice::new(3);
+    let half = Vector2::new(0.5f32, 1.5e-4);
+    let (thin, disc) = (BoxShape::new(half).unwrap(), Sphere::new(1.0f32).unwrap());
+    let wide = (BoxShape::new(half.map(f64::from)).unwrap(), Sphere::new(1.0f64).unwrap());
+    for number in 0..4000 {
+        let angle = rng.range(0.0, 6.0);
+        let turn = Rotation2::new(angle).matrix().map(|x| x as f32);
+        let local = Vector2::new(0.5 + 0.999, 1.5e-4 + rng.range(0.0, 1.2e-4));
+        let at = (Rotation2::new(angle) * local).map(|x| x as f32);
+        let guess = (Rotation2::new(angle) * Vector2::new(1.0, -0.1)).map(|x| x as f32);
+        let (a, b) = (Body::new(&thin, turn, Vector2::zeros()).unwrap(), Body::at(&disc, at));
+        let options = Options { guess: Some(guess), ..Options::default() };
+        let found = Workspace::<f32, 2, 16, 16>::new().solver().depth(&a, &b, &options);
+        let a = Body::new(&wide.0, turn.map(f64::from), Vector2::zeros()).unwrap();
+        let b = Body::at(&wide.1, at.map(f64::from));
+        let truth = Workspace::<f64, 2, 16, 16>::new().solver().depth(&a, &b, &Options::default());
+        let (low, high) = (f64::from(found.lower), f64::from(found.upper));
+        assert!(low <= truth.upper && truth.lower <= high, "{number}: {found:?} for {truth:?}");
+    }
+}

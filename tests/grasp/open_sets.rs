@@ -1,0 +1,254 @@
+//! Sets with the origin on their boundary, open grasps above all; and polytopal Q of any number of vertices. Truths are closed forms, brute
+//! force over Q's vertices, and the least contact forces of `ForceSolver`.
+use crate::common;
+use crate::grasp_common;
+
+use common::dice::Dice;
+use common::memory::Memory;
+use grasp_common::random_contact;
+use nalgebra::SMatrix;
+use qdist::grasp::{ForceOptions, ForceOutcome, ForceSolver, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
+use qdist::support::{BoxShape, Failure, Points, Support};
+use qdist::{Options, Outcome, Vector};
+use std::cell::Cell;
+
+/// Contacts that all press to one side of a plane through the reference point: an open grasp.
+fn open_grasp(dice: &mut Dice, count: usize) -> Vec<Primitive<f64>> {
+    let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
+    let side = Vector::<f64, 3>::from(dice.direction::<3>());
+    let mut contacts = Vec::new();
+    while contacts.len() < count {
+        let contact = random_contact::<f64>(dice, 1.0);
+        // The whole friction cone to one side: n.s > mu |n x s|.
+        let (along, mu) = (contact.normal().dot(&side), contact.friction().coefficients().0);
+        if along > 1.05 * mu * (1.0 - along * along).max(0.0).sqrt() && along > 0.05 {
+            contacts.push(contact);
+        }
+    }
+    let mut memory = vec![Primitive::empty(); count];
+    wrenches(&contacts, &frame, &mut memory).unwrap().to_vec()
+}
+
+fn gauges() -> Vec<Box<dyn Gauge<f64, 6>>> {
+    let axes = Vector::from([1.0, 2.0, 0.5, 1.0, 1.0, 3.0]);
+    vec![
+        Box::new(Ball::unit()),
+        Box::new(EllipsoidGauge::new(axes, SMatrix::identity()).unwrap()),
+        Box::new(BoxGauge::new(axes).unwrap()),
+        Box::new(CrossPolytope::new(axes).unwrap()),
+    ]
+}
+
+/// Six dimensions and a Q around the origin: the height 0 is met within a few points, and there is nothing more to be found out. (The memory was
+/// filled first: 109 points and 4,000 facets in the median.)
+#[test]
+fn an_open_grasp_costs_no_more_than_its_proof() {
+    let mut dice = Dice::new(20);
+    let mut memory = Memory::new::<f64, 6>(512, 4000);
+    let mut calls = Vec::new();
+    for case in 0..100 {
+        let primitives = open_grasp(&mut dice, 2 + case % 6);
+        for norm in [Norm::L1, Norm::LInf] {
+            let w = WrenchSet::new(&primitives, norm);
+            for q in gauges() {
+                let answer = memory.solver::<f64, 6>().solve(&w, &*q, &Options::default());
+                assert!(answer.lower == 0.0 && answer.upper >= 0.0, "{case} {:e} {:e}", answer.lower, answer.upper);
+                assert!(answer.upper <= 1e-12 * w.extent().max(1.0), "{case} {:e}", answer.upper);
+                let outcome = answer.outcome;
+                assert!(matches!(outcome, Outcome::Touching | Outcome::Degenerate), "{case} {outcome:?}");
+                calls.push(answer.support_calls);
+            }
+        }
+    }
+    calls.sort_unstable();
+    assert!(calls[calls.len() / 2] <= 20 && calls[calls.len() * 9 / 10] <= 60, "{:?}", &calls[calls.len() * 9 / 10..]);
+}
+
+/// A set like another one that does not tell that it contains the origin.
+struct Silent<'a>(&'a dyn Support<f64, 6>);
+
+impl Support<f64, 6> for Silent<'_> {
+    fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+        self.0.support(u)
+    }
+    fn extent(&self) -> f64 {
+        self.0.extent()
+    }
+    fn error(&self) -> f64 {
+        self.0.error()
+    }
+}
+
+/// Without the set's word the nearest point shows how far below 0 d may be: by no more than rounding.
+#[test]
+fn an_open_grasp_that_does_not_tell() {
+    let mut dice = Dice::new(21);
+    let mut memory = Memory::new::<f64, 6>(512, 4000);
+    for case in 0..100 {
+        let primitives = open_grasp(&mut dice, 2 + case % 6);
+        let w = WrenchSet::new(&primitives, Norm::LInf);
+        for q in gauges() {
+            let answer = memory.solver::<f64, 6>().solve(&Silent(&w), &*q, &Options::default());
+            let size = w.extent().max(1.0);
+            assert!(answer.lower <= 0.0 && answer.upper >= 0.0, "{case} {:e} {:e}", answer.lower, answer.upper);
+            assert!(answer.upper <= 1e-12 * size, "{case} {:e}", answer.upper);
+            assert!(answer.lower >= -1e-6 * size && answer.support_calls < 1000, "{case} {:e}", answer.lower);
+        }
+    }
+}
+
+/// A segment asks for its own direction only: how large one wrench may be, although the grasp resists others not at all. (The answer
+/// was 0 <= d, after 50,000 points.)
+#[test]
+fn one_wrench_of_an_open_grasp() {
+    let mut dice = Dice::new(22);
+    let mut memory = Memory::new::<f64, 6>(512, 4000);
+    let (mut inside, mut outside, mut narrow) = (0, 0, 0);
+    for case in 0..100 {
+        let primitives = open_grasp(&mut dice, 3 + case % 5);
+        for norm in [Norm::L1, Norm::LInf] {
+            let w = WrenchSet::new(&primitives, norm);
+            // Halfway to a mean of random points of W, and somewhere else.
+            let mut mean = Vector::<f64, 6>::zeros();
+            for _ in 0..12 {
+                mean += w.support(&Vector::from(dice.direction::<6>())).unwrap() / 24.0;
+            }
+            for end in [mean, Vector::from(dice.direction::<6>())] {
+                let Ok(q) = Segment::new(end) else { continue };
+                let answer = memory.solver::<f64, 6>().solve(&w, &q, &Options::default());
+                assert!(answer.support_calls < 5000, "{case} {}", answer.support_calls);
+                assert!(answer.lower >= 0.0 && answer.lower <= answer.upper);
+                let mut shares = vec![Vector::zeros(); primitives.len()];
+                let options = ForceOptions::default();
+                let forces = ForceSolver::new().resist(&w, &-end, &options, &mut shares).unwrap();
+                // The size of forces that exert the wrench is 1 / d.
+                match forces.outcome {
+                    ForceOutcome::Converged => {
+                        inside += 1;
+                        let (least, most) = (1.0 / forces.upper, 1.0 / forces.lower);
+                        assert!(answer.lower <= most * (1.0 + 1e-7), "{case} {} {most}", answer.lower);
+                        assert!(answer.upper >= least * (1.0 - 1e-7), "{case} {} {least}", answer.upper);
+                        assert!(
+                            answer.upper <= most * (1.0 + 1e-5),
+                            "{case} {} {most} {:?} {:?} {}",
+                            answer.upper,
+                            answer.outcome,
+                            answer.plan,
+                            answer.lower
+                        );
+                        narrow += u32::from(answer.upper - answer.lower <= 1e-5 * answer.upper);
+                    }
+                    ForceOutcome::NotResistible => {
+                        outside += 1;
+                        assert!(answer.upper <= 1e-8 * w.extent() / end.norm(), "{case} {:e}", answer.upper);
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    assert!(inside >= 100 && outside >= 50, "{inside} {outside}");
+    // (Others run along the boundary of W: how much of them is in W is not for arithmetic to tell.)
+    assert!(f64::from(narrow) >= 0.9 * f64::from(inside), "{narrow} of {inside}");
+}
+
+/// d > 0, however small: as long as arithmetic can tell it from 0, so do we.
+#[test]
+fn nearly_open_sets_are_told_from_open_ones() {
+    let mut memory = Memory::new::<f64, 3>(256, 512);
+    for exponent in 1..16 {
+        let d = 0.1f64.powi(exponent);
+        let points = [[-1.0, -1.0, -d], [1.0, -1.0, -d], [0.0, 1.0, -d], [0.0, 0.0, 1.0]];
+        let set = Points::new(&points).unwrap();
+        for q in
+            [Box::new(Ball::unit()) as Box<dyn Gauge<f64, 3>>, Box::new(BoxGauge::new(Vector::repeat(1.0)).unwrap())]
+        {
+            let answer = memory.solver::<f64, 3>().solve(&set, &*q, &Options::default());
+            assert!(answer.lower <= d && d <= answer.upper, "{d:e} {:e} {:e}", answer.lower, answer.upper);
+            assert!(exponent > 12 || answer.lower > 0.5 * d, "{d:e} {:e} {:e}", answer.lower, answer.upper);
+        }
+    }
+}
+
+/// Vertices on a sphere around the origin.
+fn sphere<const N: usize>(dice: &mut Dice, count: usize) -> Vec<[f64; N]> {
+    (0..count).map(|_| dice.direction::<N>().map(|x| 0.3 * x)).collect()
+}
+
+/// d of the octahedron |x|_1 <= 1 and of a box, by brute force: the least over Q's vertices.
+fn many_vertices<const N: usize>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let octahedron: Vec<[f64; N]> = (0..2 * N)
+        .map(|k| std::array::from_fn(|i| if i != k / 2 { 0.0 } else { 1.0 - 2.0 * (k % 2) as f64 }))
+        .collect();
+    let octahedron = Points::new(&octahedron).unwrap();
+    let half = Vector::<f64, N>::from_fn(|i, _| 1.0 + 0.3 * i as f64);
+    let cuboid = BoxShape::new(half).unwrap();
+    let mut memory = Memory::new::<f64, N>(512, 4000);
+    for (count, most) in [(4, 800), (64, 800), (1000, 800), (20_000, 800)] {
+        for _ in 0..if count > 5000 { 1 } else { 9 } {
+            let vertices = sphere::<N>(&mut dice, count);
+            let q = Vertices::new(&vertices).unwrap();
+            let sum = |v: &[f64; N]| v.iter().map(|x| x.abs()).sum::<f64>();
+            let part = |v: &[f64; N]| (0..N).map(|i| v[i].abs() / half[i]).fold(0.0, f64::max);
+            let d = 1.0 / vertices.iter().map(sum).fold(0.0, f64::max);
+            let answer = memory.solver::<f64, N>().solve(&octahedron, &q, &Options::default());
+            assert!(answer.lower <= d * (1.0 + 1e-15) && d <= answer.upper * (1.0 + 1e-15));
+            assert_eq!(answer.outcome, Outcome::Converged);
+            assert!(answer.support_calls <= most, "{N} {count} {}", answer.support_calls);
+            let d = 1.0 / vertices.iter().map(part).fold(0.0, f64::max);
+            let answer = memory.solver::<f64, N>().solve(&cuboid, &q, &Options::default());
+            assert!(answer.lower <= d * (1.0 + 1e-15) && d <= answer.upper * (1.0 + 1e-15));
+            assert_eq!(answer.outcome, Outcome::Converged);
+            assert!(answer.support_calls <= most, "{N} {count} {}", answer.support_calls);
+        }
+    }
+}
+
+/// Rays at thousands of vertices took a second where expansion takes a millisecond.
+#[test]
+fn a_polytopal_q_of_many_vertices_is_not_left_to_rays() {
+    many_vertices::<2>(3);
+    many_vertices::<3>(4);
+    many_vertices::<6>(5);
+}
+
+/// Vertices that are the origin, and one that is not: the deadline was never asked.
+struct Nothing(usize);
+
+impl Gauge<f64, 3> for Nothing {
+    fn value(&self, u: &Vector<f64, 3>) -> Result<f64, Failure> {
+        Ok((0.1 * u.x).max(0.0))
+    }
+    fn vertex_count(&self) -> usize {
+        self.0
+    }
+    fn vertex(&self, index: usize) -> Vector<f64, 3> {
+        Vector::from([if index == 0 { 0.1 } else { 0.0 }, 0.0, 0.0])
+    }
+    fn error(&self) -> f64 {
+        1e-16
+    }
+}
+
+#[test]
+fn the_deadline_is_asked_between_vertices_that_are_the_origin() {
+    let cuboid = BoxShape::new(Vector::from([1.0, 1.0, 1.0])).unwrap();
+    let mut memory = Memory::new::<f64, 3>(64, 128);
+    let asked = Cell::new(0);
+    let expire = || {
+        asked.set(asked.get() + 1);
+        asked.get() > 100
+    };
+    let q = Nothing(100_000_000);
+    let answer = memory.solver::<f64, 3>().solve_until(&cuboid, &q, &Options::default(), Some(&expire));
+    assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12));
+    assert!(answer.outcome == Outcome::Interrupted || answer.outcome == Outcome::Converged);
+    // Many of the same vertex.
+    let many = vec![[0.1, 0.05, 0.0]; 1_000_000];
+    let q = Vertices::new(&many).unwrap();
+    asked.set(0);
+    let answer = memory.solver::<f64, 3>().solve_until(&cuboid, &q, &Options::default(), Some(&expire));
+    assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12), "{} {}", answer.lower, answer.upper);
+}
