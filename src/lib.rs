@@ -71,7 +71,7 @@
 //! scalar      f32 and f64
 //! ```
 //!
-//! The C layer is a package of its own, `capi`, and stands on all of this. (`tests/house.rs` reads this list, and fails where an arrow points up.)
+//! The C layer is a package of its own, `capi`, and stands on all of this. (`tests/core/house.rs` reads this list, and fails where an arrow points up.)
 //!
 //! # Memory, threads, failure
 //!

@@ -55,7 +55,7 @@ impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
 /// `error`: N/2 + 1 roundoffs of the norm, one of the product: `(N + 4) u radius`.
 ///
 /// ```
-/// use qdist::{qset::{Ball, Gauge}, scalar::Vector};
+/// use qdist::{qset::{Ball, Gauge}, Vector};
 /// let q = Ball::new(2.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([0.0, 3.0, 4.0])).unwrap(), 10.0);
 /// ```
@@ -107,7 +107,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for Ball<T> {
 ///
 /// ```
 /// use nalgebra::SMatrix;
-/// use qdist::{qset::{EllipsoidGauge, Gauge}, scalar::Vector};
+/// use qdist::{qset::{EllipsoidGauge, Gauge}, Vector};
 /// let q = EllipsoidGauge::new(Vector::from([2.0, 0.0]), SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0)).unwrap();
 /// assert_eq!(q.value(&Vector::from([7.0, 1.0])).unwrap(), 2.0);
 /// ```
@@ -186,7 +186,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
 /// `error`: N roundoffs of the sum, which is at most |half|: `(N + 1) u |half|`.
 ///
 /// ```
-/// use qdist::{qset::{BoxGauge, Gauge}, scalar::Vector};
+/// use qdist::{qset::{BoxGauge, Gauge}, Vector};
 /// let q = BoxGauge::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 3.0);
 /// ```
@@ -246,7 +246,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for BoxGauge<T, N> {
 /// `error`: one rounding of a product: `2 u max(semi)`.
 ///
 /// ```
-/// use qdist::{qset::{CrossPolytope, Gauge}, scalar::Vector};
+/// use qdist::{qset::{CrossPolytope, Gauge}, Vector};
 /// let q = CrossPolytope::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 2.0);
 /// ```
@@ -318,7 +318,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
 /// `error`: N roundoffs of the product: `(N + 1) u |end|`.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, Segment}, scalar::Vector};
+/// use qdist::{qset::{Gauge, Segment}, Vector};
 /// let q = Segment::new(Vector::from([0.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 2.0);
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 0.0);
@@ -364,7 +364,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for Segment<T, N> {
 /// `error`: that of [`Points`] for the choice, and N roundoffs of the product: `(3 N + 4) u max |q|`.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, Vertices}, scalar::Vector};
+/// use qdist::{qset::{Gauge, Vertices}, Vector};
 /// let corners = [[1.0, 0.0], [0.0, 3.0]];
 /// let q = Vertices::new(&corners).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 3.0);
@@ -409,7 +409,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for Vertices<'_, T, N> {
 /// A gauge given by a closure `u -> h_Q(u)` and the bound of its rounding error.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, GaugeFn}, scalar::Vector};
+/// use qdist::{qset::{Gauge, GaugeFn}, Vector};
 /// let q = GaugeFn::new(|u: &Vector<f64, 2>| Ok(u[0].abs()), 0.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([-2.0, 5.0])).unwrap(), 2.0);
 /// ```
