@@ -258,7 +258,8 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // The iteration limit is reached.
 #define QDIST_ITERATIONS 7
 
-// The set is flat and the origin lies in it; `dimension` of the result says how flat.
+// The set is flat, as far as the rounding of its points tells, and the origin lies in it; `dimension` of the result says how flat. (A set that is
+// only thin ends with QDIST_PRECISION.)
 #define QDIST_DEGENERATE 8
 
 // A callback failed; the status is QDIST_ERROR_CALLBACK.

@@ -109,7 +109,8 @@ pub const QDIST_PRECISION: qdist_outcome = 5;
 pub const QDIST_CAPACITY: qdist_outcome = 6;
 /// The iteration limit is reached.
 pub const QDIST_ITERATIONS: qdist_outcome = 7;
-/// The set is flat and the origin lies in it; `dimension` of the result says how flat.
+/// The set is flat, as far as the rounding of its points tells, and the origin lies in it; `dimension` of the result says how flat. (A set that is
+/// only thin ends with QDIST_PRECISION.)
 pub const QDIST_DEGENERATE: qdist_outcome = 8;
 /// A callback failed; the status is QDIST_ERROR_CALLBACK.
 pub const QDIST_SUPPORT_FAILED: qdist_outcome = 9;

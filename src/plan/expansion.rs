@@ -170,6 +170,9 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                     return Ok(Some(Stop::Capacity));
                 }
             } else {
+                // What sticks out by more than the rounding of a point is not flat, as far as arithmetic can tell.
+                let told = self.resolution_along(&direction) * T::of(0.25);
+                query.is_thin |= start.progress(&direction, &vertex.point) > told;
                 start.flat(&direction);
             }
         }

@@ -27,7 +27,8 @@ pub enum Outcome {
     Iterations,
     /// The caller's deadline has passed.
     Interrupted,
-    /// A is flat and the origin lies in it: d is 0 for a full-dimensional Q. See [`Answer::dimension`].
+    /// A is flat, as far as the rounding of its points tells, and the origin lies in it: d is 0 for a full-dimensional Q. See
+    /// [`Answer::dimension`]. (A set that is only thin ends with `Precision`.)
     Degenerate,
     /// A support or gauge function failed, or returned values that are not finite.
     SupportFailed,
@@ -171,6 +172,8 @@ pub(crate) enum Stop {
     Iterations,
     Interrupted,
     Flat,
+    /// Flat but for a width that the margins swallow.
+    Thin,
     /// It is another plan's turn: the end of no query.
     Turn,
     Failed(i32),
@@ -188,7 +191,9 @@ impl Stop {
             Stop::Flat if lower <= zero => Outcome::Degenerate,
             Stop::Met | Stop::Rounding | Stop::Zero if at_zero => Outcome::Touching,
             _ if met && lower > zero => Outcome::Converged,
-            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Zero | Stop::Flat | Stop::Turn => Outcome::Precision,
+            Stop::Met | Stop::Outside | Stop::Rounding | Stop::Zero | Stop::Flat | Stop::Thin | Stop::Turn => {
+                Outcome::Precision
+            }
             Stop::Capacity => Outcome::Capacity,
             Stop::Iterations => Outcome::Iterations,
             Stop::Interrupted => Outcome::Interrupted,

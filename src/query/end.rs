@@ -105,7 +105,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             (stop, _) => stop,
         };
         // Too thin for its margin is not flat: that takes an upper bound that says so.
-        let stop = if stop == Stop::Flat && !self.is_at_zero() { Stop::Rounding } else { stop };
+        let stop = match stop {
+            Stop::Flat if !self.is_at_zero() => Stop::Rounding,
+            Stop::Flat if self.is_thin => Stop::Thin,
+            _ => stop,
+        };
         let at_zero = lower <= T::zero() && (met || self.is_tight(&Bracket { lower, upper }));
         let outcome = stop.outcome(lower, upper, met, at_zero);
         witness.rescale(T::one() / self.scale);

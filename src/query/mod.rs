@@ -105,6 +105,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     widest: T,
     /// Nothing but the lower end at 0 is left to be found out.
     spent: bool,
+    /// A was taken for flat, for its margins, and is not.
+    pub is_thin: bool,
     /// Ask the support function without its shortcuts.
     exhaustive: bool,
     pub iterations: u32,
@@ -171,6 +173,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             skipped: T::HUGE,
             widest: T::zero(),
             spent: false,
+            is_thin: false,
             exhaustive: false,
             iterations: 0,
             limit: match options.max_iterations {
