@@ -22,14 +22,20 @@ pub(crate) struct Expanded<T> {
 }
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
+    /// Is there nothing left to find out, or is it another plan's turn?
+    #[inline(always)]
+    fn done(&mut self, query: &mut Query<'_, T, N>) -> Result<Option<Stop>, Failure> {
+        if query.is_spent() && self.confirm(query)? {
+            return Ok(Some(Stop::Zero));
+        }
+        Ok(query.work.is_over().then_some(Stop::Turn))
+    }
+
     /// Lines 5 to 9 of Algorithm 1.
     pub(crate) fn expand(&mut self, query: &mut Query<'_, T, N>) -> Result<Expanded<T>, Failure> {
         loop {
-            if query.is_spent() && self.confirm(query)? {
-                return Ok(Expanded { stop: Stop::Zero, key: -T::HUGE, facet: None });
-            }
-            if query.work.is_over() {
-                return Ok(Expanded { stop: Stop::Turn, key: -T::HUGE, facet: None });
+            if let Some(stop) = self.done(query)? {
+                return Ok(Expanded { stop, key: -T::HUGE, facet: None });
             }
             let Some((key, index)) = self.pop_lowest() else {
                 // No facet below the best upper bound is left.

@@ -67,6 +67,16 @@ fn shoot_on<T: Real, const N: usize>(
     Ok((ray, shot))
 }
 
+/// Whether the inverse still is one is checked before anything is concluded from it: false where it had to be polished.
+fn settle<T: Real, const N: usize>(ray: &mut Ray<T, N>, query: &Query<'_, T, N>, polished: &mut bool) -> bool {
+    let fine = *polished || ray.reach().is_none_or(|(_, miss)| miss <= query.resolution());
+    if !fine {
+        ray.polish();
+        *polished = true;
+    }
+    fine
+}
+
 fn follow<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     ray: &mut Ray<T, N>,
@@ -75,17 +85,7 @@ fn follow<T: Real, const N: usize>(
 ) -> Result<Shot, Failure> {
     let mut polished = false;
     for _ in 0..STEPS {
-        let reach = ray.reach();
-        // Whether the inverse still is one is checked before anything is concluded from it.
-        let settle = |ray: &mut Ray<T, N>, query: &Query<'_, T, N>, polished: &mut bool| {
-            let fine = *polished || ray.reach().is_none_or(|(_, miss)| miss <= query.resolution());
-            if !fine {
-                ray.polish();
-                *polished = true;
-            }
-            fine
-        };
-        if let Some((t, _)) = reach
+        if let Some((t, _)) = ray.reach()
             && t >= level(query)
         {
             if settle(ray, query, &mut polished) {

@@ -61,8 +61,9 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         Ok(if gauge > self.gauge_error { (height + self.bounds.radius) / gauge } else { T::HUGE })
     }
 
-    /// The answer for this stop, lower bound and evidence; whoever used memory adds how much.
-    pub fn answer(&mut self, stop: Stop, lower: T, mut witness: Simplex<T, N>) -> Answer<T, N> {
+    /// The stop after best direction and rival have been asked for without shortcuts.
+    #[inline]
+    fn verified(&mut self, stop: Stop) -> Stop {
         let stop = match self.verify() {
             Ok(_) => stop,
             Err(Failure(code)) => {
@@ -70,10 +71,27 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
                 Stop::Failed(code)
             }
         };
-        let stop = match self.verify_rival() {
+        match self.verify_rival() {
             Ok(()) => stop,
             Err(Failure(code)) => Stop::Failed(code),
-        };
+        }
+    }
+
+    /// Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
+    #[inline]
+    fn decided(&self, stop: Stop, lower: T, upper: T) -> Stop {
+        match (stop, self.options.threshold) {
+            (Stop::Failed(code), _) => Stop::Failed(code),
+            (_, Some(t)) if lower >= t => Stop::Above,
+            (_, Some(t)) if upper < t => Stop::Below,
+            (Stop::Above | Stop::Below, _) => Stop::Rounding,
+            (stop, _) => stop,
+        }
+    }
+
+    /// The answer for this stop, lower bound and evidence; whoever used memory adds how much.
+    pub fn answer(&mut self, stop: Stop, lower: T, mut witness: Simplex<T, N>) -> Answer<T, N> {
+        let stop = self.verified(stop);
         // (The points have been checked as they came.)
         let numbers = witness.corners.iter().flat_map(|corner| corner.vertex.witness.iter());
         // 0 x is 0, unless x is infinite or NaN.
@@ -96,14 +114,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         };
         let known = lower > -T::HUGE && lower < T::HUGE && upper < T::HUGE;
         let met = known && self.is_met(&Bracket { lower, upper });
-        // Whatever ended the run, a threshold that the final bracket decides is decided, and no other.
-        let stop = match (stop, self.options.threshold) {
-            (Stop::Failed(code), _) => Stop::Failed(code),
-            (_, Some(t)) if lower >= t => Stop::Above,
-            (_, Some(t)) if upper < t => Stop::Below,
-            (Stop::Above | Stop::Below, _) => Stop::Rounding,
-            (stop, _) => stop,
-        };
+        let stop = self.decided(stop, lower, upper);
         // Too thin for its margin is not flat: that takes an upper bound that says so.
         let stop = match stop {
             Stop::Flat if !self.is_at_zero() => Stop::Rounding,

@@ -67,6 +67,26 @@ impl<T: Real> ContactGradient<T> {
     }
 }
 
+/// What the equations K force = 0 of joints cost, K^T y for the y of the least squares solution; and how many of them count. `basis`: first of
+/// range(J), `rank` rows, then of its complement; `target`: what the friction part of the price has to be.
+fn price<T: Real>(basis: &[[T; 4]; 4], rank: usize, radii: &[T; 3], target: &[T; 3], tolerance: T) -> ([T; 4], usize) {
+    let zero = T::zero();
+    // The columns of K^T; those of range(J) are zero.
+    let mut complement = *basis;
+    complement.iter_mut().take(rank).for_each(|row| *row = [zero; 4]);
+    let svd = Svd::new(complement.map(|row| core::array::from_fn::<T, 3, _>(|i| row[i + 1] * radii[i])));
+    let [largest, ..] = svd.sigma;
+    let full = svd.rank(tolerance * largest);
+    let mut price = [zero; 4];
+    for ((image, v), sigma) in svd.image.iter().zip(&svd.v).zip(svd.sigma).take(full) {
+        let share = dot(image, target) / sigma / sigma;
+        for (row, x) in complement.iter().zip(v) {
+            price.iter_mut().zip(row).for_each(|(y, &b)| *y += share * *x * b);
+        }
+    }
+    (price, full)
+}
+
 impl<T: Real> Refined<'_, T> {
     /// The gradient of d with respect to contact `index`, which is `hand`; the set's primitive of that index was made of it
     /// with this `frame` and `tolerance`. `None` where there is none: a [`kink`](Self::kink), no such contact, or a contact
@@ -148,19 +168,7 @@ impl<T: Real> Refined<'_, T> {
                 let (rank, basis) = jacobian.range(frame.torque_scale(), tolerance)?;
                 let beta = active.set().map_or(zero, |(_, disc)| norm(&disc.tr_mul(&g))) / delta;
                 let target: [T; 3] = core::array::from_fn(|i| radii[i] * g[i + 1] - beta * used[i]);
-                // The columns of K^T; those of range(J) are zero.
-                let mut complement = basis;
-                complement.iter_mut().take(rank).for_each(|row| *row = [zero; 4]);
-                let svd = Svd::new(complement.map(|row| core::array::from_fn::<T, 3, _>(|i| row[i + 1] * radii[i])));
-                let [largest, ..] = svd.sigma;
-                let full = svd.rank(tolerance * largest);
-                let mut price = [zero; 4];
-                for ((image, v), sigma) in svd.image.iter().zip(&svd.v).zip(svd.sigma).take(full) {
-                    let share = dot(image, &target) / sigma / sigma;
-                    for (row, x) in complement.iter().zip(v) {
-                        price.iter_mut().zip(row).for_each(|(y, &b)| *y += share * *x * b);
-                    }
-                }
+                let (price, full) = price(&basis, rank, &radii, &target, tolerance);
                 let generic = rank == jacobian.joints().min(4) && full + rank == 4;
                 let by_jacobian = generic.then(|| {
                     let c = jacobian.pseudo_inverse(frame.torque_scale(), rank, &force.data.0[0]);

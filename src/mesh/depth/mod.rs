@@ -36,6 +36,7 @@
 //! ```
 
 mod branching;
+mod budget;
 mod contact_space;
 mod finish;
 mod order;
@@ -45,6 +46,7 @@ mod sampling;
 mod search;
 mod seeds;
 mod step;
+mod tick;
 mod tracker;
 mod translation;
 mod walk;
@@ -55,11 +57,12 @@ use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};
 use branching::Branches;
+pub use budget::Budget;
 use contact_space::{ContactSpace, Primitive};
 use nalgebra::Isometry3;
 use search::Search;
 pub use seeds::samples::{ContactSamples, SamplesError};
-pub use tracker::{Budget, DepthTracker};
+pub use tracker::DepthTracker;
 
 /// How the boundary of the free space is searched around a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -164,17 +164,7 @@ where
             rows.push(Row::new(factor.forward(&c.normal), (c.offset - c.normal.dot(&y)).min(0.0)));
         }
         let program = Program { body, members: &members, here, size, factor, constraints: rows.len(), reference };
-        let Some(mut proposal) = program.propose(rows, best.value, None) else { return best };
-        best.programs += 1;
-        best.lower = best.lower.max(proposal.lower);
-        if proposal.fraction < CURVED {
-            let Some(corrected) = program.propose(rows, best.value, Some(&proposal.d)) else { return best };
-            best.programs += 1;
-            best.lower = best.lower.max(corrected.lower);
-            if corrected.height < proposal.height {
-                proposal = corrected;
-            }
-        }
+        let Some(proposal) = best.proposed_by(&program, rows) else { return best };
         let Proposal { d, weights, fraction, .. } = proposal;
         y += d * fraction;
         for (p, new) in members.iter_mut().zip(&weights) {
@@ -193,6 +183,27 @@ where
         }
     }
     best
+}
+
+impl Solution {
+    /// The step that a program proposes, corrected for curvature where it is cut short; takes over its lower bound.
+    fn proposed_by<P>(&mut self, program: &Program<'_, P>, rows: &mut std::vec::Vec<Row>) -> Option<Proposal>
+    where
+        P: Fn(&Field) -> (Vector3<f64>, f64),
+    {
+        let mut proposal = program.propose(rows, self.value, None)?;
+        self.programs += 1;
+        self.lower = self.lower.max(proposal.lower);
+        if proposal.fraction < CURVED {
+            let corrected = program.propose(rows, self.value, Some(&proposal.d))?;
+            self.programs += 1;
+            self.lower = self.lower.max(corrected.lower);
+            if corrected.height < proposal.height {
+                proposal = corrected;
+            }
+        }
+        Some(proposal)
+    }
 }
 
 /// Takes a point among the members, if need be in the place of the one with the least weight.
