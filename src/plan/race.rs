@@ -42,11 +42,15 @@ pub(crate) fn race<T: Real, const N: usize>(
             let expanded = polytope.expand(query)?;
             match expanded.stop {
                 Stop::Turn => {}
-                Stop::Rounding | Stop::Capacity => return second(polytope, query, expanded, rays),
+                Stop::Rounding | Stop::Capacity => return second(polytope, query, expanded, &mut rays),
                 _ => return Ok(Ended::Expansion(expanded)),
             }
-        } else if let Some(found) = rays.advance(query)? {
-            return finish(polytope, query, found);
+        } else if rays.advance(query)? {
+            query.work.allow(u64::MAX);
+            return match decided(query, &mut rays) {
+                Some(rays) => Ok(Ended::Rays(rays)),
+                None => polytope.expand(query).map(Ended::Expansion),
+            };
         }
         let [by_turns, again] = TURNS;
         turn = by_rays / OF * if expands { by_turns } else { again };
@@ -59,21 +63,9 @@ pub(crate) fn race<T: Real, const N: usize>(
 pub(crate) fn by_rays<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
 ) -> Result<Option<Crossings<T, N>>, Failure> {
-    let found = RaySearch::new(query).advance(query)?.flatten();
-    Ok(decided(query, found))
-}
-
-/// The answer after the rays' end.
-fn finish<T: Real, const N: usize>(
-    polytope: &mut Polytope<'_, T, N>,
-    query: &mut Query<'_, T, N>,
-    found: Option<Crossings<T, N>>,
-) -> Result<Ended<T, N>, Failure> {
-    query.work.allow(u64::MAX);
-    match decided(query, found) {
-        Some(rays) => Ok(Ended::Rays(rays)),
-        None => polytope.expand(query).map(Ended::Expansion),
-    }
+    let mut rays = RaySearch::new(query);
+    rays.advance(query)?;
+    Ok(decided(query, &mut rays))
 }
 
 /// The answer after an expansion that memory or rounding has ended: rays need no memory, and may lose less to rounding.
@@ -81,12 +73,12 @@ fn second<T: Real, const N: usize>(
     polytope: &mut Polytope<'_, T, N>,
     query: &mut Query<'_, T, N>,
     expanded: Expanded<T>,
-    mut rays: RaySearch<T, N>,
+    rays: &mut RaySearch<T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     query.work.allow(u64::MAX);
     if !polytope.widen(query, expanded.stop, expanded.key)? {
-        let found = rays.advance(query)?.flatten();
-        if let Some(rays) = decided(query, found) {
+        rays.advance(query)?;
+        if let Some(rays) = decided(query, rays) {
             return Ok(Ended::Rays(rays));
         }
         // (After a limit nothing is asked that would not be asked after a later one.)
@@ -101,20 +93,20 @@ fn second<T: Real, const N: usize>(
 /// Rays that have decided the query; of others the lower bound is kept.
 fn decided<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
-    found: Option<Crossings<T, N>>,
+    rays: &mut RaySearch<T, N>,
 ) -> Option<Crossings<T, N>> {
-    let rays = found?;
-    match rays.stop {
+    let found = rays.found.as_ref()?;
+    match found.stop {
         // Where rounding cost the rays too much, expansion loses less, unless there is nothing left for it.
         Stop::Rounding if !query.is_spent() => {}
         // Where they were cut short, expansion may know more.
         Stop::Iterations | Stop::Interrupted => query.plan = Plan::Rays,
         _ => {
             query.plan = Plan::Rays;
-            return Some(rays);
+            return rays.found.take();
         }
     }
-    query.raise(rays.lower);
+    query.raise(found.lower);
     None
 }
 

@@ -61,8 +61,8 @@ pub(crate) struct RaySearch<T, const N: usize> {
     again: bool,
     /// The origin is on the boundary of A, up to rounding.
     at_edge: bool,
-    /// What the passes before have shown.
-    found: Option<Crossings<T, N>>,
+    /// What the passes before have shown; nothing when they cannot decide, as the origin is not certainly inside A.
+    pub found: Option<Crossings<T, N>>,
 }
 
 impl<T: Real, const N: usize> RaySearch<T, N> {
@@ -88,36 +88,36 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         self.count.saturating_sub(self.index).saturating_add(around).saturating_add(again) as u64
     }
 
-    /// Goes on, for one ray at least, until the turn is over: `None`. At the end what the rays have shown; nothing when they cannot decide, as
-    /// the origin is not certainly inside A.
+    /// Goes on, for one ray at least, until the turn is over. Is that the end?
     #[inline(never)]
-    #[allow(clippy::type_complexity)]
-    pub fn advance(&mut self, query: &mut Query<'_, T, N>) -> Result<Option<Option<Crossings<T, N>>>, Failure> {
+    pub fn advance(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         if !(query.size() > T::zero()) {
-            return Ok(Some(None)); // A is the origin, as far as it was asked: no size for the first corners.
+            return Ok(true); // A is the origin, as far as it was asked: no size for the first corners.
         }
         loop {
             match self.shoot_all(query) {
                 Ok(Shot::Hit) => {}
-                Ok(Shot::Stopped(Stop::Turn)) => return Ok(None),
+                Ok(Shot::Stopped(Stop::Turn)) => return Ok(false),
                 // What an earlier pass has shown still holds.
                 Ok(shot) => {
                     if matches!(shot, Shot::Left) {
                         query.spend();
                     }
                     let stop = query.exhausted().unwrap_or(Stop::Rounding);
-                    return Ok(Some(self.found.take().map(|earlier| Crossings { stop, ..earlier })));
+                    self.found.iter_mut().for_each(|earlier| earlier.stop = stop);
+                    return Ok(true);
                 }
                 Err(Failure(code)) => {
-                    let found = self.found.take().ok_or(Failure(code))?;
-                    return Ok(Some(Some(Crossings { stop: Stop::Failed(code), ..found })));
+                    let earlier = self.found.as_mut().ok_or(Failure(code))?;
+                    earlier.stop = Stop::Failed(code);
+                    return Ok(true);
                 }
             }
             if self.conclude(query)? {
                 if self.at_edge {
                     query.spend(); // No surface around the origin proves more.
                 }
-                return Ok(Some(self.found.take()));
+                return Ok(true);
             }
         }
     }

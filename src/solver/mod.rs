@@ -13,7 +13,6 @@ use crate::math::Vector;
 use crate::plan::distance::{Cloud, Inflated, Nearest, nearest};
 use crate::plan::expansion::Expanded;
 use crate::plan::race::{Ended, by_rays, race};
-use crate::plan::rays::Crossings;
 use crate::polytope::Polytope;
 use crate::polytope::simplex::{Simplex, Vertex};
 use crate::qset::Gauge;
@@ -31,20 +30,11 @@ pub struct Solver<'w, T, const N: usize> {
 }
 
 /// What is known when the plans that any query begins with have had their say.
-struct Opening<T, const N: usize> {
-    end: End<T, N>,
+struct Opening<T, const N: usize, E> {
+    /// How the plan ended; or, with no plan, the end of the distance iteration, which decided.
+    end: Result<E, Stop>,
     /// The point of A nearest to the origin, where A has a ball term.
     near: Option<Nearest<T, N>>,
-}
-
-/// Which plan came to an end.
-enum End<T, const N: usize> {
-    /// Expansion.
-    Expanded(Expanded<T>),
-    /// The distance iteration, which decided.
-    Near(Stop),
-    /// Rays, which decided.
-    Crossed(Crossings<T, N>),
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
@@ -115,10 +105,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The plan for a query that has been made ready.
     fn decide(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         match self.open(query, choose) {
-            Ok(Opening { end: End::Expanded(expanded), near }) if expanded.stop == Stop::Capacity => {
-                self.solve_cones(query, expanded, near)
+            Ok(Opening { end: Ok(Ended::Expansion(expanded)), near }) if expanded.stop == Stop::Capacity => {
+                self.solve_cones(query, expanded, near.as_ref())
             }
-            Ok(opening) => self.close(query, opening),
+            Ok(Opening { end: Ok(Ended::Expansion(expanded)), near }) => self.conclude(query, expanded, near.as_ref()),
+            Ok(Opening { end: Ok(Ended::Rays(rays)), .. }) => self.report(query, rays.stop, rays.lower, rays.witness),
+            Ok(Opening { end: Err(stop), near }) => self.conclude_near(query, stop, near.as_ref()),
             Err(failure) => self.give_up(query, failure),
         }
     }
@@ -162,29 +154,24 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub(crate) fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
         match self.open(query, expand) {
-            Ok(opening) => self.close(query, opening),
+            Ok(Opening { end: Ok(expanded), near }) => self.conclude(query, expanded, near.as_ref()),
+            Ok(Opening { end: Err(stop), near }) => self.conclude_near(query, stop, near.as_ref()),
             Err(failure) => self.give_up(query, failure),
         }
     }
 
-    /// The answer after the opening.
-    fn close(&mut self, query: &mut Query<'_, T, N>, opening: Opening<T, N>) -> Answer<T, N> {
-        match (opening.end, opening.near) {
-            (End::Expanded(expanded), near) => self.conclude(query, expanded, near),
-            (End::Near(stop), near) => {
-                query.plan = Plan::Distance;
-                self.lower_by_vertices(query, stop, near)
-            }
-            (End::Crossed(rays), _) => self.report(query, rays.stop, rays.lower, rays.witness),
-        }
+    /// The answer of the distance iteration.
+    fn conclude_near(&self, query: &mut Query<'_, T, N>, stop: Stop, near: Option<&Nearest<T, N>>) -> Answer<T, N> {
+        query.plan = Plan::Distance;
+        self.lower_by_vertices(query, stop, near)
     }
 
     /// Distance where that decides; else the first simplex, and the plan that it is for.
-    fn open(
+    fn open<E>(
         &mut self,
         query: &mut Query<'_, T, N>,
-        plan: impl FnOnce(&mut Polytope<'_, T, N>, &mut Query<'_, T, N>, Option<Stop>) -> Result<End<T, N>, Failure>,
-    ) -> Result<Opening<T, N>, Failure> {
+        plan: impl FnOnce(&mut Polytope<'_, T, N>, &mut Query<'_, T, N>, Option<Stop>) -> Result<E, Failure>,
+    ) -> Result<Opening<T, N, E>, Failure> {
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
         let mut floor = None;
@@ -193,13 +180,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             let bracket =
                 Bracket { lower: query.lower_from_simplex(&near.simplex, near.distance), upper: query.upper() };
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
-                return Ok(Opening { end: End::Near(stop), near: Some(near) });
+                return Ok(Opening { end: Err(stop), near: Some(near) });
             }
             floor = Some(near);
         }
         let stop = self.polytope.start(query, &first)?;
         let end = plan(&mut self.polytope, query, stop)?;
-        Ok(Opening { end, near: floor })
+        Ok(Opening { end: Ok(end), near: floor })
     }
 
     /// Cone by cone, after the polytope has outgrown the memory.
@@ -207,11 +194,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         query: &mut Query<'_, T, N>,
         expanded: Expanded<T>,
-        floor: Option<Nearest<T, N>>,
+        floor: Option<&Nearest<T, N>>,
     ) -> Answer<T, N> {
         // What the search stores are images of A's points in its cones. Until it has a bound, those stored before are what is known.
         let known = self.polytope.lower(query, expanded.key).is_some();
-        let floor = if known { floor } else { self.nearest_stored(query, floor) };
+        let stored = if known { None } else { self.nearest_stored(query, floor) };
+        let floor = stored.as_ref().or(floor);
         let Some(found) = self.polytope.conewise(query, &expanded) else {
             return self.conclude(query, expanded, floor);
         };
@@ -275,7 +263,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         query: &mut Query<'_, T, N>,
         expanded: Expanded<T>,
-        floor: Option<Nearest<T, N>>,
+        floor: Option<&Nearest<T, N>>,
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
@@ -303,7 +291,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
                 Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {
-                    let near = floor.into_iter().fold(near, |a, b| if b.distance < a.distance { b } else { a });
+                    let near = floor.into_iter().fold(&near, |a, b| if b.distance < a.distance { b } else { a });
                     return self.lower_by_vertices(query, stop, Some(near));
                 }
                 Ok((end, near)) => {
@@ -319,11 +307,18 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 
     /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
     /// the point that was nearest before.
-    fn lower_by_vertices(&self, query: &mut Query<'_, T, N>, stop: Stop, floor: Option<Nearest<T, N>>) -> Answer<T, N> {
-        match self.nearest_stored(query, floor) {
+    #[inline(never)]
+    fn lower_by_vertices(
+        &self,
+        query: &mut Query<'_, T, N>,
+        stop: Stop,
+        floor: Option<&Nearest<T, N>>,
+    ) -> Answer<T, N> {
+        let stored = self.nearest_stored(query, floor);
+        match stored.as_ref().or(floor) {
             Some(near) => {
                 let lower = query.lower_from_simplex(&near.simplex, near.distance);
-                self.report(query, stop, lower, near.simplex)
+                self.report(query, stop, lower, near.simplex.clone())
             }
             None => self.report(query, stop, -T::HUGE, Simplex::new(Vertex::empty())),
         }
@@ -343,14 +338,13 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         Ok(())
     }
 
-    /// The point nearest to the origin of those that are known: the stored vertices' hull, and one from before.
-    fn nearest_stored(&self, query: &Query<'_, T, N>, before: Option<Nearest<T, N>>) -> Option<Nearest<T, N>> {
+    /// The point nearest to the origin of the stored vertices' hull, if one from before is not nearer.
+    fn nearest_stored(&self, query: &Query<'_, T, N>, before: Option<&Nearest<T, N>>) -> Option<Nearest<T, N>> {
         let cloud = Cloud { vertices: self.polytope.vertices(), origin: Vector::zeros() };
         if cloud.vertices.is_empty() {
-            return before;
+            return None;
         }
-        let stored = cloud.nearest(&query.first_direction());
-        stored.into_iter().chain(before).reduce(|a, b| if b.distance < a.distance { b } else { a })
+        cloud.nearest(&query.first_direction()).filter(|stored| before.is_none_or(|b| !(b.distance < stored.distance)))
     }
 
     fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
@@ -363,10 +357,10 @@ fn expand<T: Real, const N: usize>(
     polytope: &mut Polytope<'_, T, N>,
     query: &mut Query<'_, T, N>,
     stop: Option<Stop>,
-) -> Result<End<T, N>, Failure> {
+) -> Result<Expanded<T>, Failure> {
     match stop {
-        None => polytope.expand(query).map(End::Expanded),
-        Some(stop) => Ok(End::Expanded(Expanded { stop, key: -T::HUGE, facet: None })),
+        None => polytope.expand(query),
+        Some(stop) => Ok(Expanded { stop, key: -T::HUGE, facet: None }),
     }
 }
 
@@ -375,23 +369,16 @@ fn choose<T: Real, const N: usize>(
     polytope: &mut Polytope<'_, T, N>,
     query: &mut Query<'_, T, N>,
     stop: Option<Stop>,
-) -> Result<End<T, N>, Failure> {
-    if query.rays() == 0 {
-        return expand(polytope, query, stop);
+) -> Result<Ended<T, N>, Failure> {
+    if query.rays() > 0 && stop.is_none() {
+        return race(polytope, query);
     }
-    match stop {
-        None => {
-            return Ok(match race(polytope, query)? {
-                Ended::Rays(rays) => End::Crossed(rays),
-                Ended::Expansion(expanded) => End::Expanded(expanded),
-            });
-        }
-        Some(Stop::Flat) if !(query.inner_radius() > T::zero()) => {
-            if let Some(rays) = by_rays(query)? {
-                return Ok(End::Crossed(rays));
-            }
-        }
-        Some(_) => {}
+    if query.rays() > 0
+        && stop == Some(Stop::Flat)
+        && !(query.inner_radius() > T::zero())
+        && let Some(rays) = by_rays(query)?
+    {
+        return Ok(Ended::Rays(rays));
     }
-    expand(polytope, query, stop)
+    expand(polytope, query, stop).map(Ended::Expansion)
 }
