@@ -1,15 +1,15 @@
 //! Depth where a body turns about an axis: minimisers may lie on an arc around it (module `sectors`).
 //!
 //! Pairs are expanded as any, but only to [`PATIENCE`] vertices: where the minimiser is not on an arc, that is enough. Then the sectors around each axis
-//! are searched, and if that does not end the query either (a smooth body, a tolerance near roundoff), expansion has all the memory there
-//! is. Two bodies of revolution whose axes agree up to a small share of the tolerance are measured in a plane before (module `meridian`), at that charge.
+//! are searched, then those around an edge of the other body that runs nearly along it, and if that does not end the query either (a smooth body,
+//! a tolerance near roundoff), expansion has all the memory there is. Two bodies of revolution whose axes agree up to a small share of the tolerance are measured in a plane before (module `meridian`), at that charge.
 //!
 //! The rounding of the sectors' points, beside that of M's own: axes and azimuths are unit and orthogonal to 4 u, a point is split in two and put together again
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
 //! s only makes circles of the set's circles up to 4 s times their size.
 
 use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
-use crate::math::{Vector, unit};
+use crate::math::{Vector, norm, unit};
 use crate::qset::Ball;
 use crate::query::Options;
 use crate::query::answer::{Answer, Outcome};
@@ -23,6 +23,15 @@ pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
 
 /// More vertices than expansion takes where no minimisers lie on an arc.
 const PATIENCE: usize = 48;
+
+/// How far the directions are leant that find both ends of an edge.
+const LEAN: f64 = 0.03125;
+
+/// Shorter edges than this share of the extent make no arc.
+const SHORTEST: f64 = 1e-3;
+
+/// Cosine of the angle between axis and edge beyond which minimisers lie on no arc that expansion could not tile.
+const ALIGNED: f64 = 0.75;
 
 /// For a body of revolution or an ellipsoid: how depth is found with one. A program that has no such body does not contain it.
 #[derive(Clone, Copy)]
@@ -109,7 +118,31 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         body.shape.turning()?;
         let axis = body.axis()?;
         let other = other.axis().map(|b| if b.dot(&axis) < T::zero() { -b } else { b });
-        Some(Spin { axis, first, offset: self.offset, other })
+        Some(Spin { axis, turns: true, first, offset: self.offset, other })
+    }
+
+    /// The other body's edge that `direction` touches, as the axis to search around, where it runs along the axis of `spin`, nearly. (Any unit
+    /// vector would do for the proof.) Its ends are what two directions find that are leant along the axis; and if that is no such edge, from a step to either
+    /// side: the direction may be the normal of a face.
+    fn edge(&self, spin: &Spin<T>, direction: &Vector<T, 3>, calls: &mut u32) -> Option<Spin<T>> {
+        if spin.other.is_some() {
+            return None;
+        }
+        let (lean, side) = (spin.axis * T::of(LEAN), direction.cross(&spin.axis) * T::of(LEAN));
+        [*direction, direction + side, direction - side].iter().find_map(|middle| {
+            *calls = calls.saturating_add(2);
+            let end = |u| {
+                let (point, witness) = self.sample(&unit(&u), false).ok()?;
+                Some(if spin.first { point - witness } else { witness })
+            };
+            let along = end(middle + lean)? - end(middle - lean)?;
+            let along = if along.dot(&spin.axis) < T::zero() { -along } else { along };
+            let length = norm(&along);
+            let is_edge = length > self.extent * T::of(SHORTEST) && length <= T::HUGE;
+            let axis = unit(&along);
+            let aligned = is_edge && axis.dot(&spin.axis) > T::of(ALIGNED);
+            aligned.then_some(Spin { axis, turns: false, first: !spin.first, other: Some(spin.axis), ..*spin })
+        })
     }
 }
 
@@ -173,7 +206,7 @@ impl<T: Real> Solver<'_, T, 3> {
         self.conclude_pair(pair, &answer, &options, interrupt)
     }
 
-    /// The search around each axis, after an answer that did not suffice. Adds to the support calls.
+    /// The search around each axis, then around edges, after an answer that did not suffice. Adds to the support calls.
     fn search_arcs(
         &mut self,
         pair: &mut Pair<'_, '_, T, 3>,
@@ -182,8 +215,12 @@ impl<T: Real> Solver<'_, T, 3> {
         interrupt: Option<&dyn Fn() -> bool>,
         known: &Answer<T, 3>,
     ) -> Option<Answer<T, 3>> {
-        for first in [true, false] {
-            let Some(spin) = pair.spin(first) else { continue };
+        for (first, edge) in [(true, false), (false, false), (true, true), (false, true)] {
+            let Some(mut spin) = pair.spin(first) else { continue };
+            if edge {
+                let Some(around) = pair.edge(&spin, &known.direction, calls) else { continue };
+                spin = around;
+            }
             let off = (skew(&pair.a.rotation) + skew(&pair.b.rotation)) * T::count(4);
             let uncharged = pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
             let ball = Ball::unit();

@@ -1,6 +1,6 @@
 //! Arcs of minimisers: a search sector by sector around the axis of a body of revolution.
 //!
-//! Where a corner or an edge of one body lies on the axis of a cylinder, a cone or a disc, or two bodies of revolution are nearly
+//! Where a corner or an edge of one body lies near the axis of a cylinder, a cone or a disc, or two bodies of revolution are nearly
 //! coaxial, the minimisers of h_M are an arc of directions around the axis, or so near to one that expansion in space must tile
 //! it: to a relative 1e-6 with thousands of facets. But the rim that makes the arc is known. Let C be the body
 //! of revolution, a its axis, e(w) the unit vector across a at azimuth w, and M = K + C with K all the rest (the other body and the
@@ -29,6 +29,13 @@
 //! for the (s, c) that was asked. With g = b.z and t = b.e(w), its radius e.v = k (s - t g) and height a.v = k (c - (a.b) g) vary as t does: by the
 //! tilt of b against a, times the width of the sector. The height counts with its lowest value in the upper part of the chain, and
 //! with its highest in the lower part: each part has its own.
+//!
+//! # Around an edge
+//!
+//! Nothing asks C to turn about a: with the whole point of M in the place of p and no circle, the argument is the same. So where K is a body of
+//! revolution and C has an edge that runs nearly along its axis b, the minimisers are nearly the arc of directions across the edge, and the
+//! search goes around that: it leaves both ends of the edge exactly where they are, however far from each other, and K's circle is taken
+//! in as above. (Around b, each sector would have to be as narrow as the edge's ends are off b.)
 //!
 //! # Minima over a sector
 //!
@@ -73,8 +80,10 @@ const HALVINGS: usize = 40;
 
 /// The bodies, as the search sees them.
 pub(crate) struct Spin<T: Real> {
-    /// The axis of C, a unit vector.
+    /// The axis to search around, of C or along an edge of it; a unit vector.
     pub axis: Vector<T, 3>,
+    /// Does C turn about it?
+    pub turns: bool,
     /// Is C the first body?
     pub first: bool,
     /// The anchor of A minus that of B, in the caller's units.
@@ -133,14 +142,19 @@ impl<T: Real> Sector<'_, T> {
     fn flatten(&self, vertex: &Vertex<T, 3>, direction: &Vector<T, 3>) -> Vector<T, 3> {
         let axis = &self.spin.axis;
         let [rest, turning] = self.split(vertex);
-        let height = turning.dot(axis);
-        let radius = norm(&(turning - axis * height));
-        let own = Vector::<T, 3>::new(radius, height, -height);
-        let (r, h) = (self.least(&rest), rest.dot(axis));
+        let (own, carried) = if self.spin.turns {
+            let height = turning.dot(axis);
+            (Vector::<T, 3>::new(norm(&(turning - axis * height)), height, -height), Vector::zeros())
+        } else {
+            // (One sum with the rest: what is far from both anchors cancels.)
+            (Vector::zeros(), turning)
+        };
+        let whole = rest + carried;
+        let (r, h) = (self.least(&whole), whole.dot(axis));
         let fixed = Vector::<T, 3>::new(r, h, -h);
         let best = match &self.spin.other {
             Some(b) => {
-                let ring = self.ring(&rest, b, direction);
+                let ring = self.ring(&rest, &carried, b, direction);
                 if self.score(&ring, direction) >= self.score(&fixed, direction) { ring } else { fixed }
             }
             None => fixed,
@@ -155,13 +169,19 @@ impl<T: Real> Sector<'_, T> {
         (direction.dot(&self.middle) + T::of(0.0625)) * place.x + height
     }
 
-    /// The same for the circle of the point about the axis b.
-    fn ring(&self, point: &Vector<T, 3>, b: &Vector<T, 3>, direction: &Vector<T, 3>) -> Vector<T, 3> {
+    /// The same for the circle of the point about the axis b, and what is added to each point of it.
+    fn ring(
+        &self,
+        point: &Vector<T, 3>,
+        carried: &Vector<T, 3>,
+        b: &Vector<T, 3>,
+        direction: &Vector<T, 3>,
+    ) -> Vector<T, 3> {
         let axis = &self.spin.axis;
         let from = point - self.offset;
         let along = from.dot(b);
         let radius = norm(&(from - b * along));
-        let center = self.offset + b * along;
+        let center = self.offset + b * along + carried;
         let (s, c) = (direction.dot(&self.middle).at_least(T::zero()), direction.dot(axis));
         let cosine = axis.dot(b);
         // t and g over the sector.
