@@ -165,9 +165,9 @@ def switched(root, copy):
             (copy / file).write_text(text)
 
 
-def built(copy, target):
+def built(copy):
     """Builds the tests of the copy; their program."""
-    command = ["cargo", "test", "--locked", "--features", "std", "--no-run", "--target-dir", target, "--test", "core"]
+    command = ["cargo", "test", "--locked", "--features", "std", "--no-run", "--target-dir", copy / "target", "--test", "core"]
     run = subprocess.run(command, cwd=copy, stderr=subprocess.PIPE, text=True)
     if run.returncode != 0:
         sys.exit(run.stderr)
@@ -197,7 +197,7 @@ def main():
     copy = target / "margins"
     copy.mkdir(parents=True, exist_ok=True)
     switched(root, copy)
-    program = built(copy, target)
+    program = built(copy)
     if (failed := failing(program, copy, -1)) is not None:
         sys.exit(f"{TEST} fails with all margins: {failed}")
     missing = 0
