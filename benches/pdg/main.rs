@@ -11,16 +11,16 @@
 
 // Modules of tests and of the program are used in part, and their own tests run elsewhere.
 #[allow(dead_code, unused_imports)]
-#[path = "../../examples/pdg/answer.rs"]
+#[path = "../../cli/src/mesh/answer.rs"]
 mod answer;
 mod bars;
 #[allow(dead_code, unused_imports)]
-#[path = "../../examples/pdg/bodies.rs"]
+#[path = "../../cli/src/mesh/bodies.rs"]
 mod bodies;
 #[path = "../../tests/common/mod.rs"]
 mod common;
 #[allow(dead_code, unused_imports)]
-#[path = "../../examples/pdg/input.rs"]
+#[path = "../../cli/src/mesh/input.rs"]
 mod input;
 mod measure;
 #[path = "../../tests/mesh_common/mod.rs"]
@@ -28,14 +28,14 @@ mod mesh_common;
 mod peers;
 mod plot;
 #[allow(dead_code, unused_imports)]
-#[path = "../../examples/pdg/read.rs"]
+#[path = "../../cli/src/mesh/read.rs"]
 mod read;
 mod report;
 mod scenes;
-#[path = "../../examples/pdg/seeds.rs"]
+#[path = "../../cli/src/mesh/seeds.rs"]
 mod seeds;
 #[allow(dead_code, unused_imports)]
-#[path = "../../examples/pdg/table.rs"]
+#[path = "../../cli/src/mesh/table.rs"]
 mod table;
 mod warm;
 

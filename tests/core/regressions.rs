@@ -1,4 +1,4 @@
-//! What fuzzing (`examples/fuzz.rs`) and the other tests found, as small as it gets, by name. An ignored test is
+//! What fuzzing (`fuzz/src/bin/fuzz.rs`) and the other tests found, as small as it gets, by name. An ignored test is
 //! a bug that is known and not fixed.
 
 use crate::common;

@@ -14,9 +14,9 @@
 //!
 //! The first find is printed with its case, and the exit code is 1.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../../tests/common/mod.rs"]
 mod common;
-#[path = "../tests/mesh_common/mod.rs"]
+#[path = "../../../tests/mesh_common/mod.rs"]
 mod mesh_common;
 
 use common::dice::Dice;

@@ -8,7 +8,7 @@ use qdist::nalgebra::Isometry3;
 use crate::input::{self, Kind};
 
 pub const USAGE: &str = "\
-usage: pdg --queries FILE.json [options]                          the queries of a file (format: head of examples/pdg/input.rs)
+usage: pdg --queries FILE.json [options]                          the queries of a file (format: head of cli/src/mesh/input.rs)
        pdg A B --pose qw,qx,qy,qz,tx,ty,tz [--pose ...] [options]  two mesh files (OBJ, STL, PLY, OFF); without a pose, what is wrong with them;
                                                                   x_B = R x_A + t, |q| = 1 within 1e-3
        pdg --table1 [--queries FILE.json] [options]               the paper's Table I beside ours

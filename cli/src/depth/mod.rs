@@ -5,7 +5,7 @@ use qdist::{Options, Outcome, Real, Workspace};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../../tests/common/mod.rs"]
 mod common;
 
 /// Large hulls with their graph, other shapes as they are.

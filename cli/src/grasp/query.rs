@@ -177,7 +177,7 @@ mod tests {
     use crate::{csv, table};
     use qdist::grasp::{Contact, Friction, HandContact, Jacobian};
 
-    pub const FIXTURE: &str = include_str!("../../tests/data/grasps.json");
+    pub const FIXTURE: &str = include_str!("../../../tests/data/grasps.json");
 
     fn ask(sets: &Sets, set: Set, norm: Norm, q: &Q) -> Found {
         let mut memory = Box::new(Memory::new());

@@ -17,7 +17,7 @@
 //!
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../../tests/common/mod.rs"]
 mod common;
 
 use common::dd::{BLUR, Dd, V3, dot, norm, v3};

@@ -12,9 +12,9 @@
 //!
 //! Finds are printed with their seed and case, and the exit code is 1.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../../tests/common/mod.rs"]
 mod common;
-#[path = "../tests/mesh_common/mod.rs"]
+#[path = "../../../tests/mesh_common/mod.rs"]
 mod mesh_common;
 
 use common::dice::Dice;
