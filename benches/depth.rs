@@ -1,14 +1,12 @@
-//! Time of depth queries, per family of shapes: `cargo bench --features std [-- FILE...]`, by default on tests/data.
+//! Time of depth queries, per family of shapes: `cargo bench -p qdist-benches --bench depth [-- FILE...]`, by default on tests/data.
 //!
 //! For every case the best of 8 batches (what the machine's other work adds is not ours); for every family the
 //! median over its cases, with quartiles, and the median iterations and support calls.
 
 use qdist::{Options, Workspace};
+use qdist_benches::common;
 use std::collections::BTreeMap;
 use std::time::Instant;
-
-#[path = "../tests/common/mod.rs"]
-mod common;
 
 const BATCHES: usize = 8;
 const QUERIES: u32 = 500;
@@ -16,7 +14,7 @@ const QUERIES: u32 = 500;
 fn main() {
     let mut files: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     if files.is_empty() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data");
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
         let entries = std::fs::read_dir(folder).expect("tests/data").flatten();
         files = entries.map(|e| e.path().display().to_string()).filter(|p| p.ends_with(".txt")).collect();
     }

@@ -4,17 +4,13 @@
 //! tolerance, with the median, 90th percentile and maximum time over random force-closed grasps of soft fingers on a unit ball, and how many
 //! such questions are answered in a second. All in `f64`, in one workspace of 512 vertices and 4096 facets.
 
-#[allow(dead_code)]
-#[path = "../tests/common/dice.rs"]
-mod dice;
-
-use dice::Dice;
 use qdist::grasp::{
     Contact, Finger, ForceModel, ForceOptions, ForceSolver, Friction, HandContact, Jacobian, Layout, Norm, Primitive,
     PyramidalCone, Refined, WrenchFrame, WrenchSet, default_tolerance, linearized, wrenches,
 };
 use qdist::qset::Ball;
 use qdist::{Answer, Options, Outcome, Vector, Workspace};
+use qdist_benches::common::dice::Dice;
 use std::fmt::Write;
 use std::time::Instant;
 

@@ -140,7 +140,7 @@ def listed():
 def switched(root, copy):
     """Writes the copy with all margins behind the switch."""
     files = [root / name for name in ["Cargo.toml", "Cargo.lock", "README.md"]]
-    for folder in ["src", "capi", "tests", "benches", "examples"]:
+    for folder in ["src", "capi", "cli", "tests", "benches", "examples", "fuzz"]:
         files += [file for file in (root / folder).rglob("*") if file.is_file()]
     texts = {str(file.relative_to(root)): file.read_text() for file in files}
     spans = {}

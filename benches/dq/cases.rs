@@ -3,11 +3,11 @@
 //! Cases are written down in `f64` and built for the scalar that is to be timed.
 
 use crate::contacts::{Contact, Grasp, Norm, planar, spatial};
-use crate::dice::Dice;
 use nalgebra::{SMatrix, Vector3};
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge};
 use qdist::support::{BoxShape, Ellipsoid, Support};
 use qdist::{Options, Outcome, Real, Vector, Workspace};
+use qdist_benches::common::dice::Dice;
 use serde_json::Value;
 
 /// The set A.
@@ -104,7 +104,7 @@ pub fn solids<const N: usize>() -> [Case<N>; 2] {
 /// The grasps of the data file with the unit ball; empty when there is no such file. The unit bounds every normal
 /// force; for two of them, in another case, the sum of the normal forces.
 pub fn recorded() -> Vec<Case<6>> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/grasps/grasps.json");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/grasps/grasps.json");
     let Ok(text) = std::fs::read_to_string(file) else {
         println!("no {file}: recorded grasps are skipped");
         return Vec::new();

@@ -18,9 +18,6 @@
 mod bars;
 mod cases;
 mod contacts;
-#[allow(dead_code)]
-#[path = "../../tests/common/dice.rs"]
-mod dice;
 mod methods;
 mod plot;
 mod report;

@@ -1,12 +1,12 @@
 //! What has to be reached, against what was measured.
 
-use crate::input::Kind;
 use crate::measure::{Cold, DEFAULT};
 use crate::peers::Compared;
 use crate::report::{excess, milliseconds};
 use crate::scenes::Scenes;
-use crate::table::quantile;
 use crate::warm::{LATE, TICK, Warm, Way};
+use qdist_cli::mesh::input::Kind;
+use qdist_cli::mesh::table::quantile;
 
 /// What was asked, what was found, the bar, and whether it is met (`None`: not measured).
 struct Bar {

@@ -2,41 +2,19 @@
 //!
 //! ```text
 //! ./x bench-pdg OUT=dir [QUICK=1]
-//! cargo bench --features std --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
+//! cargo bench -p qdist-benches --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
 //! ```
 //!
 //! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's variants:
 //! unions of constraints, sampling, and the K nearest contact samples as seeds. The tracker along paths; the solid test and the distance against
 //! FCL's on the same poses. Writes `pdg.csv`, `warm.csv`, `proximity.csv` and a picture of error against time per metric.
 
-// Modules of tests and of the program are used in part, and their own tests run elsewhere.
-#[allow(dead_code, unused_imports)]
-#[path = "../../cli/src/mesh/answer.rs"]
-mod answer;
 mod bars;
-#[allow(dead_code, unused_imports)]
-#[path = "../../cli/src/mesh/bodies.rs"]
-mod bodies;
-#[path = "../../tests/common/mod.rs"]
-mod common;
-#[allow(dead_code, unused_imports)]
-#[path = "../../cli/src/mesh/input.rs"]
-mod input;
 mod measure;
-#[path = "../../tests/mesh_common/mod.rs"]
-mod mesh_common;
 mod peers;
 mod plot;
-#[allow(dead_code, unused_imports)]
-#[path = "../../cli/src/mesh/read.rs"]
-mod read;
 mod report;
 mod scenes;
-#[path = "../../cli/src/mesh/seeds.rs"]
-mod seeds;
-#[allow(dead_code, unused_imports)]
-#[path = "../../cli/src/mesh/table.rs"]
-mod table;
 mod warm;
 
 use std::error::Error;

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver, Effort, Pair, Walk};
 
-use crate::answer::{self, Row};
-use crate::input::{Kind, Query};
 use crate::scenes::Scenes;
-use crate::seeds;
+use qdist_cli::mesh::answer::{self, Row};
+use qdist_cli::mesh::input::{Kind, Query};
+use qdist_cli::mesh::seeds;
 
 /// Where walks begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use qdist::nalgebra::{Isometry3, Translation3};
 
 use crate::measure::{Cold, DEFAULT};
 use crate::scenes::Scenes;
-use crate::table::quantile;
+use qdist_cli::mesh::table::quantile;
 
 /// How far out the second poses are, in A's diagonals.
 const OUT: f64 = 0.05;

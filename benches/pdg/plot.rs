@@ -5,10 +5,10 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-use crate::input::Kind;
 use crate::measure::{Cold, VARIANTS, Variant};
 use crate::report::{excess, milliseconds};
-use crate::table::quantile;
+use qdist_cli::mesh::input::Kind;
+use qdist_cli::mesh::table::quantile;
 
 const SIZE: (u32, u32) = (900, 560);
 /// Errors below this are drawn here.

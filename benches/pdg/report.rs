@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::answer::quoted;
-use crate::input::Kind;
 use crate::measure::{Cold, VARIANTS};
 use crate::peers::Compared;
-use crate::table::quantile;
+use qdist_cli::mesh::answer::quoted;
+use qdist_cli::mesh::input::Kind;
+use qdist_cli::mesh::table::quantile;
 
 /// A line for every query, metric and variant.
 pub fn csv(cold: &[Cold]) -> String {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::bodies::{Bodies, with_pieces};
-use crate::common::dice::Dice;
-use crate::input::{self, Query};
-use crate::mesh_common::{Shape, l_shape, random_pose, slot, torus, torus_knot};
 use qdist::mesh::{Model, Pair};
+use qdist_benches::common::dice::Dice;
+use qdist_benches::mesh_common::{Shape, l_shape, random_pose, slot, torus, torus_knot};
+use qdist_cli::mesh::bodies::{Bodies, with_pieces};
+use qdist_cli::mesh::input::{self, Query};
 
-const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/meshes/queries.json");
+const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/meshes/queries.json");
 /// Poses of every made-up pair.
 const POSES: usize = 10;
 

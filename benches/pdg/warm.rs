@@ -16,10 +16,10 @@ use qdist::mesh::metric::Metric;
 use qdist::mesh::{Budget, DepthOptions, DepthSolver, DepthTracker, Model, Outcome, Pair};
 use qdist::nalgebra::{Isometry3, Translation3, center};
 
-use crate::bodies::metric;
-use crate::input::Kind;
 use crate::scenes::Scenes;
-use crate::table::quantile;
+use qdist_cli::mesh::bodies::metric;
+use qdist_cli::mesh::input::Kind;
+use qdist_cli::mesh::table::quantile;
 
 /// The longest motion of a tick, in A's diagonals.
 const STEP: f64 = 2e-3;

@@ -1,9 +1,4 @@
-//! A tool in a haptic loop: its depth at 1 kHz, and the force that a hand would feel.
-//!
-//! ```text
-//! cargo run --release --features std --example haptic
-//! cargo run --release --features std --example haptic -- TOOL.obj PART.obj [--metric disp|sigma] [--ticks N] [--realtime]
-//! ```
+//! `qdist haptic`: a tool in a haptic loop, its depth at 1 kHz, and the force that a hand would feel.
 //!
 //! The tool goes round its part on a closed curve, in and out of contact, turning as it goes. Every tick asks a [`DepthTracker`] for the depth
 //! with a clock that says "late" after 0.4 ms (a query or a certificate that has begun is finished), and is timed. Another thread asks cold queries at the newest pose all the time, whose answers are merged in. Without
@@ -18,8 +13,16 @@ use qdist::mesh::metric::Metric;
 use qdist::mesh::{Budget, DepthOptions, DepthSolver, DepthTracker, MeshDepth, Model, Outcome};
 use qdist::nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3, center};
 use std::f64::consts::TAU;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use crate::Trouble;
+use crate::mesh::input::Kind;
+use crate::mesh::{bodies, read};
 
 /// What a tick may take.
 const TICK: Duration = Duration::from_millis(1);
@@ -68,22 +71,14 @@ fn part() -> Triangles {
     })
 }
 
-fn read(file: &str) -> Result<Triangles, String> {
-    let options = tobj::LoadOptions { triangulate: true, single_index: true, ..Default::default() };
-    let (models, _) = tobj::load_obj(file, &options).map_err(|error| format!("{file}: {error}"))?;
-    let mut all: Triangles = Default::default();
-    for model in models {
-        let first = all.0.len() as u32;
-        all.0.extend(model.mesh.positions.chunks_exact(3).map(|p| Point3::new(p[0], p[1], p[2])));
-        all.1.extend(model.mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
-    }
-    Ok(all)
+fn read(file: &Path) -> Result<Triangles, Trouble> {
+    let mesh = read::mesh(file)?;
+    Ok((mesh.vertices.into_iter().map(Point3::from).collect(), mesh.triangles))
 }
 
-fn body(name: &str, (vertices, triangles): Triangles) -> Result<Model, String> {
+fn body(name: impl Display, (vertices, triangles): Triangles) -> Result<Model, Trouble> {
     let model = Model::new(&vertices, &triangles).map_err(|error| format!("{name}: {error}"))?;
-    // A soup has no certificate: its lower bounds are 0.
-    Ok(model.clone().with_pieces(&Default::default()).unwrap_or(model))
+    Ok(bodies::with_pieces(model))
 }
 
 /// Where the tool is, at s in [0, 1]: its middle on a curve through the part's box.
@@ -132,41 +127,36 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-struct Request {
-    files: Vec<String>,
-    sigma: bool,
+/// A tool in a haptic loop: its depth at 1 kHz, and the force that a hand would feel
+///
+/// The tool goes round its part on a closed curve, in and out of contact, turning as it goes. Every tick asks a tracker for the depth with a clock
+/// that says "late" after 0.4 ms, and is timed; another thread asks cold queries, whose answers are merged in. Printed are a histogram of the
+/// ticks, how the warm answers compare with cold ones, and the strongest force.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The two meshes (OBJ, STL, PLY, OFF); without them, a ring goes through a knot
+    #[arg(value_names = ["TOOL", "PART"], num_args = 2)]
+    files: Vec<PathBuf>,
+    /// What is measured
+    #[arg(long, default_value = "disp")]
+    metric: Kind,
+    /// Ticks of the curve
+    #[arg(long, value_name = "N", default_value = "5000", value_parser = at_least_one)]
     ticks: usize,
-    real_time: bool,
+    /// A tick a millisecond, not as fast as they can: otherwise the background falls behind
+    #[arg(long)]
+    realtime: bool,
 }
 
-fn parse() -> Result<Request, String> {
-    let mut request = Request { files: vec![], sigma: false, ticks: 5000, real_time: false };
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        match word.as_str() {
-            "--metric" => match words.next().as_deref() {
-                Some("disp") => request.sigma = false,
-                Some("sigma") => request.sigma = true,
-                _ => return Err("--metric is disp or sigma".into()),
-            },
-            "--ticks" => {
-                let count = words.next().and_then(|word| word.parse().ok()).filter(|&n| n > 0);
-                request.ticks = count.ok_or("--ticks is a whole number from 1 up")?;
-            }
-            "--realtime" => request.real_time = true,
-            file if !file.starts_with('-') => request.files.push(file.into()),
-            other => return Err(format!("{other}: unknown option")),
-        }
-    }
-    if ![0, 2].contains(&request.files.len()) {
-        return Err("two mesh files, or none".into());
-    }
-    Ok(request)
+fn at_least_one(text: &str) -> Result<usize, Trouble> {
+    text.parse().ok().filter(|&n| n > 0).ok_or("not a whole number from 1 up".into())
 }
 
-fn run(request: &Request) -> Result<(), String> {
+/// Goes round, and reports on the standard output.
+pub fn run(request: &Request) -> Result<(), Trouble> {
+    let sigma = request.metric == Kind::Sigma;
     let (a, b) = match request.files.as_slice() {
-        [a, b] => (body(a, read(a)?)?, body(b, read(b)?)?),
+        [a, b] => (body(a.display(), read(a)?)?, body(b.display(), read(b)?)?),
         _ => (body("tool", tool())?, body("part", part())?),
     };
     for (name, model) in [("tool", &a), ("part", &b)] {
@@ -175,7 +165,7 @@ fn run(request: &Request) -> Result<(), String> {
         }
     }
     println!("tool: {} triangles, part: {} triangles", a.mesh().triangles().len(), b.mesh().triangles().len());
-    let metric = metric(&a, request.sigma);
+    let metric = metric(&a, sigma);
     let mut times = vec![];
     let mut samples = vec![];
     let (mut merged, mut strongest) = (0, (0.0, Vector3::zeros(), Vector3::zeros(), 0));
@@ -183,7 +173,7 @@ fn run(request: &Request) -> Result<(), String> {
         let (ask, poses) = sync_channel(1);
         let (answers, results) = sync_channel(1);
         let (a, b) = (&a, &b);
-        scope.spawn(move || background(a, b, request.sigma, poses, answers));
+        scope.spawn(move || background(a, b, sigma, poses, answers));
         let mut tracker = DepthTracker::new(a, b);
         let begin = Instant::now();
         for tick in 0..request.ticks {
@@ -205,7 +195,7 @@ fn run(request: &Request) -> Result<(), String> {
                     samples.push((pose, depth));
                 }
             }
-            if request.real_time {
+            if request.realtime {
                 std::thread::sleep((begin + TICK * (tick as u32 + 1)).saturating_duration_since(Instant::now()));
             }
         }
@@ -247,20 +237,4 @@ fn report(mut times: Vec<f64>) {
         quantile(&times, 1.0),
         times.iter().filter(|&&t| t > 1.0).count()
     );
-}
-
-const USAGE: &str = "usage: haptic [TOOL.obj PART.obj] [--metric disp|sigma] [--ticks N] [--realtime]";
-
-fn main() -> std::process::ExitCode {
-    if std::env::args().any(|word| word == "--help" || word == "-h") {
-        println!("{USAGE}");
-        return std::process::ExitCode::SUCCESS;
-    }
-    match parse().and_then(|request| run(&request)) {
-        Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(trouble) => {
-            eprintln!("haptic: {trouble}");
-            std::process::ExitCode::FAILURE
-        }
-    }
 }

@@ -1,122 +1,277 @@
-//! Runs case files: brackets against references, iterations and time:
-//! `cargo run --release --features std --example cases -- [-v] [-f32] FILE...`
-use qdist::support::{Hull, Support, graph_len};
-use qdist::{Options, Outcome, Real, Workspace};
+//! `qdist depth`: convex pairs from case files, their brackets against references, iterations and time. The format is told in [`cases`].
+
+pub mod cases;
+
 use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-#[path = "../../../tests/common/mod.rs"]
-mod common;
+use clap::Args;
+use qdist::support::{Hull, Support, graph_len};
+use qdist::{Depth, Options, Real, Solver, Workspace};
+
+use crate::{Trouble, written};
+use cases::{Case, Shape};
+
+/// What a file looks like; the end of `--help`.
+const FILES: &str = "\
+A case file is one stream of tokens, without comments:
+
+  CASE id
+  S type np p...          shape A: sphere[r] box[hx hy hz, half extents] ellipsoid[a b c] cylinder[r hh] capsule[r hh] cone[r hh]
+                          (axis z, half heights, cone apex at +z); `S hull nv` is followed by nv lines x y z
+  P r00 .. r22 tx ty tz   pose of A: rotation row by row, then translation
+  S ... / P ...           shape B and its pose
+  T depth lb ub size nx ny nz
+
+depth is minus the distance where the bodies are apart, lb and ub bracket it, size is the scale that errors are quoted against, n the unit
+direction from A to B, nan where it is not known.";
+
+/// Depths of convex pairs from case files, beside their references
+///
+/// A table of the families of shapes: how many brackets contradict their reference, how many are as narrow as asked for, how many normals are
+/// within 1e-3 of the reference's, and time, points and facets of the median. The exit code is 1 when a bracket is wrong.
+#[derive(Args, Clone, Debug, PartialEq)]
+#[command(after_help = FILES)]
+pub struct Request {
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// In single precision
+    #[arg(long)]
+    f32: bool,
+    /// The tolerance, in units of the depth [default: 1e-6, with --f32 1e-4]
+    #[arg(long, value_name = "R", value_parser = tolerance)]
+    relative: Option<f64>,
+    /// The tolerance, in units of the case's size [default: 1e-12, with --f32 1e-5]
+    #[arg(long, value_name = "R", value_parser = tolerance)]
+    absolute: Option<f64>,
+    /// One line for every case, and nothing else on the standard output
+    #[arg(long)]
+    csv: bool,
+    /// Name the cases whose bracket is wrong or wide, or whose normal is off
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+fn tolerance(text: &str) -> Result<f64, Trouble> {
+    text.parse().ok().filter(|x: &f64| *x >= 0.0 && *x < 1.0).ok_or("not a number from 0 to 1".into())
+}
+
+const HEADER: &str = "id,family,outcome,lower,upper,nx,ny,nz,depth,iterations,support_calls,vertices,facets,ns";
+/// Timed queries: the median of so many batches.
+const BATCHES: usize = 5;
+const QUERIES: u32 = 20;
+/// Hulls of more points are prepared.
+const PLAIN: usize = 32;
+
+/// A solved case.
+struct Found {
+    depth: Depth<f64>,
+    /// Microseconds.
+    time: f64,
+    right: bool,
+    narrow: bool,
+    along: bool,
+}
+
+/// Answers on the standard output.
+pub fn run(request: &Request) -> Result<(), Trouble> {
+    let mut out = io::stdout().lock();
+    if request.csv {
+        writeln!(out, "{HEADER}").map_err(written)?;
+    }
+    let mut wrong = 0;
+    for file in &request.files {
+        let named = |trouble: Trouble| format!("{}: {trouble}", file.display());
+        let text = std::fs::read_to_string(file).map_err(|e| named(e.to_string()))?;
+        let cases = cases::parse(&text).map_err(named)?;
+        let found = match request.f32 {
+            true => solve_all::<f32>(request, &cases),
+            false => solve_all::<f64>(request, &cases),
+        }
+        .map_err(named)?;
+        wrong += found.iter().filter(|f| !f.right).count();
+        match request.csv {
+            true => csv(&mut out, &cases, &found),
+            false => table(&mut out, file, request, &cases, &found),
+        }
+        .map_err(written)?;
+    }
+    out.flush().map_err(written)?;
+    if wrong == 0 { Ok(()) } else { Err(format!("{wrong} brackets contradict their reference")) }
+}
+
+fn solve_all<T: Real>(request: &Request, cases: &[Case]) -> Result<Vec<Found>, Trouble> {
+    let (relative, absolute) = if request.f32 { (1e-4, 1e-5) } else { (1e-6, 1e-12) };
+    let tolerances = (request.relative.unwrap_or(relative), request.absolute.unwrap_or(absolute));
+    let mut memory = Box::new(Workspace::<T, 3, 256, 512>::new());
+    let mut solver = memory.solver();
+    let one = |case| solve(&mut solver, case, tolerances).map_err(|trouble| format!("case {}: {trouble}", case.id));
+    cases.iter().map(one).collect()
+}
+
+fn solve<T: Real>(solver: &mut Solver<'_, T, 3>, case: &Case, tolerances: (f64, f64)) -> Result<Found, Trouble> {
+    let points = case.bodies.each_ref().map(|b| b.shape.points::<T>());
+    let mut words = points.each_ref().map(|p| vec![0; graph_len(p.len())]);
+    let [left, right] = &mut words;
+    let a = prepared(&case.bodies[0].shape, &points[0], left)?;
+    let b = prepared(&case.bodies[1].shape, &points[1], right)?;
+    let (a, b) = (case.bodies[0].body(&*a)?, case.bodies[1].body(&*b)?);
+    let (relative, absolute) = (T::of(tolerances.0), T::of(tolerances.1 * case.size));
+    let options = Options { relative, absolute, ..Options::default() };
+    let depth = in_f64(&solver.depth(&a, &b, &options));
+    let mut times = [0.0; BATCHES];
+    for time in &mut times {
+        let begin = Instant::now();
+        for _ in 0..QUERIES {
+            std::hint::black_box(solver.depth(&a, &b, &options));
+        }
+        *time = begin.elapsed().as_secs_f64() * 1e6 / f64::from(QUERIES);
+    }
+    times.sort_by(f64::total_cmp);
+    let blur = blur::<T>(case);
+    Ok(Found {
+        time: times[BATCHES / 2],
+        right: depth.lower - blur <= case.upper && case.lower <= depth.upper + blur,
+        narrow: depth.upper - depth.lower <= (tolerances.0 * case.depth.abs()).max(tolerances.1 * case.size),
+        along: case.normal.is_none_or(|n| n.dot(&depth.normal) > 1.0 - 0.5e-6),
+        depth,
+    })
+}
 
 /// Large hulls with their graph, other shapes as they are.
 fn prepared<'a, T: Real>(
-    text: &common::ShapeText,
+    shape: &Shape,
     points: &'a [[T; 3]],
     words: &'a mut [u16],
-) -> Box<dyn Support<T, 3> + 'a> {
-    if points.len() <= 32 || text.kind != "hull" {
-        return common::shape(text, points);
-    }
-    let mut memory = Box::new(Workspace::<T, 3, 6000, 12100>::new());
-    match memory.solver().prepare_hull(points, words) {
-        Ok(graph) => Box::new(Hull::new(points, graph).unwrap()),
-        Err(e) => {
-            println!("{e:?}");
-            common::shape(text, points)
+) -> Result<Box<dyn Support<T, 3> + 'a>, Trouble> {
+    if points.len() > PLAIN && shape.kind == "hull" {
+        let mut memory = Box::new(Workspace::<T, 3, 6000, 12100>::new());
+        // (A hull that cannot be prepared, a flat one say, is asked as it is.)
+        if let Ok(graph) = memory.solver().prepare_hull(points, words) {
+            return Ok(Box::new(Hull::new(points, graph).map_err(|error| format!("hull: {error}"))?));
         }
+    }
+    shape.build(points)
+}
+
+/// The reference is about the file's numbers: in single precision they are others, and so is the truth.
+fn blur<T: Real>(case: &Case) -> f64 {
+    if size_of::<T>() == size_of::<f64>() {
+        return 0.0;
+    }
+    let offset: f64 = case.bodies.iter().flat_map(|b| b.translation).map(f64::abs).sum();
+    let sizes = case.bodies.iter().map(|b| b.shape.numbers.iter().fold(0.0f64, |most, x| most.max(x.abs())));
+    8.0 * T::ROUNDOFF.to_f64() * (offset + 3.0 * sizes.sum::<f64>())
+}
+
+fn in_f64<T: Real>(depth: &Depth<T>) -> Depth<f64> {
+    Depth {
+        outcome: depth.outcome,
+        lower: depth.lower.to_f64(),
+        upper: depth.upper.to_f64(),
+        normal: depth.normal.map(T::to_f64),
+        point_a: depth.point_a.map(T::to_f64),
+        point_b: depth.point_b.map(T::to_f64),
+        dimension: depth.dimension,
+        iterations: depth.iterations,
+        support_calls: depth.support_calls,
+        vertices: depth.vertices,
+        facets: depth.facets,
+        failure: depth.failure,
     }
 }
 
-fn run<T: Real>(file: &str, rel: f64, abs: f64, verbose: bool) {
-    let cases = common::parse(&std::fs::read_to_string(file).unwrap());
-    let mut memory = Box::new(Workspace::<T, 3, 256, 512>::new());
-    let mut solver = memory.solver();
-    let mut stats: BTreeMap<String, Vec<(f64, f64, u32, usize)>> = BTreeMap::new();
-    let (mut bad, mut converged, mut normals, mut n) = (0, 0, 0, 0);
-    for case in &cases {
-        let points: Vec<_> = case.bodies.iter().map(|b| common::points::<T>(&b.shape)).collect();
-        let mut words: Vec<Vec<u16>> = points.iter().map(|p| vec![0; graph_len(p.len())]).collect();
-        let (left, right) = words.split_at_mut(1);
-        let a = prepared(&case.bodies[0].shape, &points[0], &mut left[0]);
-        let b = prepared(&case.bodies[1].shape, &points[1], &mut right[0]);
-        let (a, b) = (common::body(&case.bodies[0], &*a), common::body(&case.bodies[1], &*b));
-        let options = Options { relative: T::of(rel), absolute: T::of(abs * case.size), ..Options::default() };
-        let r = solver.depth(&a, &b, &options);
-        let reps = 20;
-        let mut times: Vec<f64> = (0..5)
-            .map(|_| {
-                let start = Instant::now();
-                for _ in 0..reps {
-                    std::hint::black_box(solver.depth(&a, &b, &options));
-                }
-                start.elapsed().as_secs_f64() / reps as f64 * 1e6
-            })
-            .collect();
-        times.sort_by(f64::total_cmp);
-        let (lo, up) = (r.lower.to_f64(), r.upper.to_f64());
-        let input = if T::ROUNDOFF.to_f64() > 1e-10 {
-            let t: f64 = case.bodies.iter().map(|b| b.translation.iter().map(|x| x.abs()).sum::<f64>()).sum();
-            let s: f64 = case.bodies.iter().map(|b| b.shape.numbers.iter().fold(0.0f64, |m, x| m.max(x.abs()))).sum();
-            8.0 * T::ROUNDOFF.to_f64() * (t + 3.0 * s)
-        } else {
-            0.0
-        };
-        let ok = lo - input <= case.upper && case.lower <= up + input;
-        let width = up - lo;
-        let conv = width <= (1e-6 * case.depth.abs()).max(1e-12 * case.size);
-        let normal_ok = case.normal.is_none_or(|m| {
-            let d: f64 = (0..3).map(|i| m[i] * r.normal[i].to_f64()).sum();
-            d > 1.0 - 0.5e-6
-        });
-        n += 1;
-        bad += !ok as usize;
-        converged += conv as usize;
-        normals += normal_ok as usize;
-        if verbose && (!ok || !conv || !normal_ok || r.outcome == Outcome::Precision) {
-            println!(
-                "  {} {:?} ref {:e} lo-ref {:e} up-ref {:e} size {:.3e} it {} v {} f {} ok {} conv {} normal {} us {:.2}",
-                case.id,
-                r.outcome,
-                case.depth,
-                lo - case.depth,
-                up - case.depth,
-                case.size,
-                r.iterations,
-                r.vertices,
-                r.facets,
-                ok,
-                conv,
-                normal_ok,
-                times[2]
-            );
-        }
-        stats.entry(case.family()).or_default().push((times[2], width / case.size, r.iterations, r.facets));
+fn csv(out: &mut dyn Write, cases: &[Case], found: &[Found]) -> io::Result<()> {
+    for (case, Found { depth: d, time, .. }) in cases.iter().zip(found) {
+        let outcome = crate::grasp::csv::outcome_name(d.outcome);
+        let (n, ns) = (d.normal, (1e3 * time).round());
+        write!(out, "{},{},{outcome},{:?},{:?},", case.id, case.family(), d.lower, d.upper)?;
+        write!(out, "{:?},{:?},{:?},{:?},", n[0], n[1], n[2], case.depth)?;
+        writeln!(out, "{},{},{},{},{ns}", d.iterations, d.support_calls, d.vertices, d.facets)?;
     }
-    println!("{file}: {n} cases, bad brackets {bad}, converged {converged}, normals {normals}");
-    for (family, mut v) in stats {
-        v.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let m = v[v.len() / 2];
-        println!(
-            "   {family:22} n {:3} us {:.2} [{:.2} {:.2}] it {} facets {}",
-            v.len(),
-            m.0,
-            v[0].0,
-            v[v.len() - 1].0,
-            m.2,
-            m.3
-        );
-    }
+    Ok(())
 }
 
-fn main() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let verbose = args.iter().any(|a| a == "-v");
-    let single = args.iter().any(|a| a == "-f32");
-    for file in args.iter().filter(|a| !a.starts_with('-')) {
-        if single {
-            run::<f32>(file, 1e-4, 1e-5, verbose)
-        } else {
-            run::<f64>(file, std::env::var("REL").map_or(1e-6, |x| x.parse().unwrap()), 1e-12, verbose)
+fn table(out: &mut dyn Write, file: &Path, request: &Request, cases: &[Case], found: &[Found]) -> io::Result<()> {
+    let count = |of: fn(&Found) -> bool| found.iter().filter(|f| of(f)).count();
+    writeln!(
+        out,
+        "{}: {} cases, {} brackets wrong, {} narrow, {} normals right",
+        file.display(),
+        cases.len(),
+        count(|f| !f.right),
+        count(|f| f.narrow),
+        count(|f| f.along)
+    )?;
+    let mut families: BTreeMap<String, Vec<&Found>> = BTreeMap::new();
+    for (case, found) in cases.iter().zip(found) {
+        families.entry(case.family()).or_default().push(found);
+        if request.verbose && !(found.right && found.narrow && found.along) {
+            one(out, case, found)?;
         }
+    }
+    writeln!(
+        out,
+        "  {:22} {:>5} {:>9} {:>9} {:>9} {:>7} {:>7}",
+        "family", "cases", "us least", "median", "most", "points", "facets"
+    )?;
+    for (family, mut list) in families {
+        list.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let [least, middle, most] = [0, list.len() / 2, list.len() - 1].map(|i| list[i]);
+        let (points, facets) = (middle.depth.iterations, middle.depth.facets);
+        let times = format!("{:9.2} {:9.2} {:9.2}", least.time, middle.time, most.time);
+        writeln!(out, "  {family:22} {:5} {times} {points:7} {facets:7}", list.len())?;
+    }
+    Ok(())
+}
+
+/// A case that is not as it should be.
+fn one(out: &mut dyn Write, case: &Case, found: &Found) -> io::Result<()> {
+    let d = &found.depth;
+    let faults = [(found.right, "WRONG"), (found.narrow, "wide"), (found.along, "normal off")];
+    let faults: Vec<&str> = faults.into_iter().filter(|fault| !fault.0).map(|fault| fault.1).collect();
+    let outcome = crate::grasp::csv::outcome_name(d.outcome);
+    let (under, over) = (d.lower - case.depth, d.upper - case.depth);
+    writeln!(
+        out,
+        "  {}: {}; {outcome}, depth {:e}, bracket {under:+.1e} {over:+.1e} of it, size {:.1e}, {} points, {} facets",
+        case.id,
+        faults.join(", "),
+        case.depth,
+        case.size,
+        d.iterations,
+        d.facets
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        request: Request,
+    }
+
+    /// Every bracket of a fixture is right and narrow, in both scalar types; a reference that is not true is noticed.
+    #[test]
+    fn the_fixture_and_a_false_reference() {
+        let text =
+            std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/std_box_box.txt")).unwrap();
+        let mut cases = cases::parse(&text).unwrap();
+        let request = |line: &str| Line::try_parse_from(line.split_whitespace()).unwrap().request;
+        let found = solve_all::<f64>(&request("depth a.txt"), &cases).unwrap();
+        assert!(found.iter().all(|f| f.right && f.narrow && f.along));
+        assert!(solve_all::<f32>(&request("depth a.txt --f32"), &cases).unwrap().iter().all(|f| f.right));
+        let mut lines = Vec::new();
+        csv(&mut lines, &cases, &found).unwrap();
+        let lines = String::from_utf8(lines).unwrap();
+        assert!(lines.lines().all(|line| line.split(',').count() == HEADER.split(',').count()));
+        (cases[0].lower, cases[0].upper) = (2.0 * cases[0].depth, 2.0 * cases[0].depth);
+        assert!(!solve_all::<f64>(&request("depth a.txt"), &cases).unwrap()[0].right);
     }
 }

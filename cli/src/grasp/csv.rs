@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use qdist::Outcome;
 
-use crate::input::{Grasp, norm_name};
-use crate::query::Found;
+use crate::grasp::input::{Grasp, norm_name};
+use crate::grasp::query::Found;
 
 pub const HEADER: &str = "id,ref,set,norm,q,lower,upper,outcome,dim,iterations,peak_facets,ns";
 

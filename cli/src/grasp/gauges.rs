@@ -4,8 +4,8 @@
 //! same shape with zeros for the others, which keeps its numbers exact. Otherwise an ellipsoid is one with other axes, and a polytope the hull of
 //! its vertices.
 
-use nalgebra::SMatrix;
 use qdist::Vector;
+use qdist::nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
 use qdist::support::ShapeError;
 

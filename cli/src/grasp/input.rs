@@ -26,9 +26,9 @@ use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm,
 use serde_json::Value;
 
 use crate::Trouble;
-use crate::field::Field;
-use crate::gauges::{Q, Shape};
-use crate::keys::repeated;
+use crate::grasp::field::Field;
+use crate::grasp::gauges::{Q, Shape};
+use crate::grasp::keys::repeated;
 
 /// One grasp of the file.
 pub struct Grasp {
@@ -489,7 +489,7 @@ mod tests {
     fn the_shared_files_are_read() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
         for (file, count) in [("grasps", 8), ("hands", 16), ("open", 12), ("regular", 42), ("reported", 32)] {
-            let text = std::fs::read_to_string(root.join(format!("../shared/data/grasps/{file}.json"))).unwrap();
+            let text = std::fs::read_to_string(root.join(format!("../../shared/data/grasps/{file}.json"))).unwrap();
             let grasps = read(&text, false).unwrap();
             assert_eq!(grasps.len(), count, "{file}");
             // (Two contacts of a grasp that is open look away from each other.)

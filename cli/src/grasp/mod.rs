@@ -1,55 +1,38 @@
-//! Reads grasps from a JSON file and tells how well they hold: d_Q of their wrench sets, with a bracket, in words, beside the file's own
-//! references.
-//!
-//! ```text
-//! cargo run --release --features std --example grasp -- ../shared/data/grasps/grasps.json
-//! ```
+//! `qdist grasp`: reads grasps from a JSON file and tells how well they hold: d_Q of their wrench sets, with a bracket, in words, beside the
+//! file's own references.
 //!
 //! `--help` tells what it takes, and how a file looks. What the file may say in full is told in `input.rs`. A grasp without `refs` is asked for a ball, with
 //! both norms, and with W^a where a contact has a Jacobian.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use clap::Args;
 use qdist::grasp::Norm;
 
-mod csv;
+pub mod csv;
 mod field;
-mod gauges;
-mod input;
+pub mod gauges;
+pub mod input;
 mod keys;
 mod plot;
-mod query;
-mod sets;
+pub mod query;
+pub mod sets;
 mod slices;
 mod surface;
 mod table;
 mod table1;
 mod words;
 
+use crate::{CLOSED, Trouble, written};
 use gauges::{Q, Shape};
 use input::{Grasp, Reference, Set};
 use query::Memory;
 use sets::Sets;
 
-/// What is wrong, in words.
-type Trouble = String;
-
-const USAGE: &str = "usage: grasp FILE.json [--csv] [--plot DIR] [--relative R] [--normalize]\n       grasp --table1\n       grasp --help";
-
-const HELP: &str = r#"
-How well do grasps hold? For each grasp of the file, and each set of wrenches Q that it asks about: d, the largest multiple of Q that the
-contacts can resist, as a bracket [lower, upper]; what is hardest to resist, and which contacts limit it.
-
-  --csv          one line for every reference, and nothing else on the standard output
-  --plot DIR     a picture for every reference: DIR/ID_REF.svg
-  --relative R   the tolerance where Q is a ball or an ellipsoid, 1e-4 otherwise; polytopes and segments are solved to 1e-10
-  --normalize    make all normals and tangents unit vectors (in the file: "normalize": true)
-  --table1       the paper's Table I beside ours; needs no file
-
-The least that a file must say, a pinch of a block by two soft fingertips (normals n point into the object):
+/// What a file looks like; the end of `--help`.
+const FILES: &str = r#"The least that a file must say, a pinch of a block by two soft fingertips (normals n point into the object):
 
   {"contacts": [{"p": [-0.03, 0, 0], "n": [ 1, 0, 0], "mu": 0.5, "mus": 0.01},
                 {"p": [ 0.03, 0, 0], "n": [-1, 0, 0], "mu": 0.5, "mus": 0.01}]}
@@ -67,44 +50,35 @@ More of it: several grasps as {"instances": [...]} or [...].
 
 Any other field is an error; a name that begins with _ is a note. Without "refs" a grasp is asked for the unit ball."#;
 
-/// What the command line asks for.
-#[derive(Debug, PartialEq)]
-struct Request {
-    file: Option<String>,
+/// How well do grasps hold?
+///
+/// For each grasp of the file, and each set of wrenches Q that it asks about: d, the largest multiple of Q that the contacts can resist, as a
+/// bracket [lower, upper]; what is hardest to resist, and which contacts limit it.
+#[derive(Args, Clone, Debug, PartialEq)]
+#[command(after_help = FILES)]
+pub struct Request {
+    /// Grasps; what a file may say is told below
+    #[arg(value_name = "FILE.json", required_unless_present = "table1")]
+    file: Option<PathBuf>,
+    /// One line for every reference, and nothing else on the standard output
+    #[arg(long)]
     csv: bool,
+    /// The paper's Table I beside ours; needs no file
+    #[arg(long, conflicts_with = "csv")]
     table1: bool,
+    /// Make all normals and tangents unit vectors (in the file: "normalize": true)
+    #[arg(long)]
     normalize: bool,
+    /// A picture for every reference: DIR/ID_REF.svg
+    #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
+    /// The tolerance where Q is a ball or an ellipsoid; polytopes and segments are solved to 1e-10
+    #[arg(long, value_name = "R", default_value = "1e-4", value_parser = tolerance)]
     relative: f64,
 }
 
-impl Request {
-    fn parse(arguments: impl Iterator<Item = String>) -> Result<Self, Trouble> {
-        let mut request = Self { file: None, csv: false, table1: false, normalize: false, plot: None, relative: 1e-4 };
-        let mut arguments = arguments;
-        while let Some(argument) = arguments.next() {
-            let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
-            match argument.as_str() {
-                "--csv" => request.csv = true,
-                "--table1" => request.table1 = true,
-                "--normalize" => request.normalize = true,
-                "--plot" => request.plot = Some(value()?.into()),
-                "--relative" => {
-                    let text = value()?;
-                    let number = text.parse().ok().filter(|x: &f64| *x >= 0.0 && *x < 1.0);
-                    request.relative = number.ok_or(format!("--relative {text} is not a number from 0 to 1"))?;
-                }
-                flag if flag.starts_with('-') => return Err(format!("{flag} is not known")),
-                _ if request.file.is_some() => return Err("more than one file".into()),
-                _ => request.file = Some(argument),
-            }
-        }
-        match (&request.file, request.table1, request.csv) {
-            (None, false, _) => Err("no file".into()),
-            (_, true, true) => Err("--table1 is not for --csv".into()),
-            _ => Ok(request),
-        }
-    }
+fn tolerance(text: &str) -> Result<f64, Trouble> {
+    text.parse().ok().filter(|x: &f64| *x >= 0.0 && *x < 1.0).ok_or("not a number from 0 to 1".into())
 }
 
 /// The queries of a grasp that comes without: W^a where joints make forces.
@@ -184,44 +158,48 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
     Ok(())
 }
 
-/// The reader of the output went away: that is how `| head` ends, and no trouble.
-const CLOSED: &str = "";
-
-fn written(error: io::Error) -> Trouble {
-    if error.kind() == io::ErrorKind::BrokenPipe { CLOSED.into() } else { format!("standard output: {error}") }
-}
-
-fn run(request: &Request) -> Result<(), Trouble> {
+/// Answers on the standard output.
+pub fn run(request: &Request) -> Result<(), Trouble> {
     let mut out = io::stdout().lock();
     if request.table1 {
         table1::print(&mut out, request.relative)?;
     }
     if let Some(file) = &request.file {
-        let named = |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{file}: {trouble}") };
+        let named =
+            |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{}: {trouble}", file.display()) };
         let text = std::fs::read_to_string(file).map_err(|e| named(e.to_string()))?;
         input::read(&text, request.normalize).and_then(|grasps| report(request, grasps, &mut out)).map_err(named)?;
     }
     out.flush().map_err(written)
 }
 
-fn main() -> ExitCode {
-    if std::env::args().skip(1).any(|argument| argument == "--help" || argument == "-h") {
-        println!("{USAGE}\n{HELP}");
-        return ExitCode::SUCCESS;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        request: Request,
     }
-    let request = match Request::parse(std::env::args().skip(1)) {
-        Ok(request) => request,
-        Err(trouble) => {
-            eprintln!("{trouble}\n{USAGE}");
-            return ExitCode::from(2);
-        }
-    };
-    match run(&request) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(trouble) if trouble == CLOSED => ExitCode::SUCCESS,
-        Err(trouble) => {
-            eprintln!("{trouble}");
-            ExitCode::FAILURE
-        }
+
+    fn parse(line: &str) -> Result<Request, clap::Error> {
+        Line::try_parse_from(format!("grasp {line}").split_whitespace()).map(|line| line.request)
+    }
+
+    #[test]
+    fn what_may_be_asked() {
+        let request = parse("a.json --csv --relative 1e-6 --plot out --normalize").unwrap();
+        assert_eq!((request.file, request.plot), (Some("a.json".into()), Some("out".into())));
+        assert_eq!((request.csv, request.normalize, request.relative), (true, true, 1e-6));
+        let request = parse("--table1").unwrap();
+        assert_eq!((request.file, request.table1, request.relative), (None, true, 1e-4));
+    }
+
+    #[test]
+    fn what_may_not() {
+        let lines = ["", "a b", "a --what", "a --plot", "a --relative 1", "a --relative nan", "--table1 --csv"];
+        lines.into_iter().for_each(|line| assert!(parse(line).is_err(), "{line}"));
     }
 }

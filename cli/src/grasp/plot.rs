@@ -10,10 +10,10 @@ use plotters::prelude::*;
 use qdist::Solver;
 
 use crate::Trouble;
-use crate::input::{Grasp, norm_name};
-use crate::query::Found;
-use crate::sets::Wrenches;
-use crate::{slices, surface};
+use crate::grasp::input::{Grasp, norm_name};
+use crate::grasp::query::Found;
+use crate::grasp::sets::Wrenches;
+use crate::grasp::{slices, surface};
 
 pub const SET: RGBColor = RGBColor(31, 89, 158);
 pub const INSIDE: RGBColor = RGBColor(200, 40, 40);
@@ -21,7 +21,7 @@ pub const INSIDE: RGBColor = RGBColor(200, 40, 40);
 /// A set and the d Q in it.
 pub struct Scene<'a> {
     pub wrenches: &'a Wrenches,
-    pub reference: &'a crate::input::Reference,
+    pub reference: &'a crate::grasp::input::Reference,
     pub found: &'a Found,
 }
 

@@ -2,16 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use nalgebra::SMatrix;
 use qdist::grasp::{Norm, WrenchSet};
+use qdist::nalgebra::SMatrix;
 use qdist::qset::{Gauge, Segment};
 use qdist::support::{Rigid, Support};
 use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
 use crate::Trouble;
-use crate::gauges::Q;
-use crate::input::Set;
-use crate::sets::{Part, Wrenches, value};
+use crate::grasp::gauges::Q;
+use crate::grasp::input::Set;
+use crate::grasp::sets::{Part, Wrenches, value};
 
 /// Facets and vertices of the workspace.
 pub type Memory = Workspace<f64, 6, 1024, 4096>;
@@ -171,10 +171,10 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gauges::Shape;
-    use crate::input::{self, Reference};
-    use crate::sets::Sets;
-    use crate::{csv, table};
+    use crate::grasp::gauges::Shape;
+    use crate::grasp::input::{self, Reference};
+    use crate::grasp::sets::Sets;
+    use crate::grasp::{csv, table};
     use qdist::grasp::{Contact, Friction, HandContact, Jacobian};
 
     pub const FIXTURE: &str = include_str!("../../../tests/data/grasps.json");

@@ -10,17 +10,17 @@
 //! A contact contributes the wrenches of its own forces. Where joints have torque limits, all contacts of the finger are one contribution: they share the
 //! joints. (Under L1 the fingers then share one supply, the contacts of one finger do not.)
 
-use nalgebra::SMatrix;
 use qdist::Vector;
 use qdist::grasp::{
     ActiveForces, ContactError, Contribution, Finger, ForceModel, GraspError, HandContact, Primitive, Subspace,
     WrenchFrame, WrenchSet, active_wrenches, default_tolerance, wrenches,
 };
+use qdist::nalgebra::SMatrix;
 use qdist::support::{Failure, Support};
 
 use crate::Trouble;
-use crate::gauges::Q;
-use crate::input::{Grasp, Set, Touch};
+use crate::grasp::gauges::Q;
+use crate::grasp::input::{Grasp, Set, Touch};
 
 /// The sine of an angle: axes of Q that are nearer to a span are in it, but for the rounding of files.
 const OUT_OF_SPAN: f64 = 1e-7;

@@ -12,8 +12,8 @@ use qdist::grasp::WrenchSet;
 use qdist::support::Support;
 use qdist::{Solver, Vector};
 
-use crate::plot::{COORDINATES, INSIDE, SET, Scene, font};
-use crate::query::reach;
+use crate::grasp::plot::{COORDINATES, INSIDE, SET, Scene, font};
+use crate::grasp::query::reach;
 
 const SIZE: (u32, u32) = (1760, 940);
 const RAYS: usize = 360;

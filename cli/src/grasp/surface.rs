@@ -6,13 +6,13 @@
 use std::error::Error;
 use std::path::Path;
 
-use nalgebra::SMatrix;
 use plotters::prelude::*;
 use qdist::Vector;
 use qdist::grasp::WrenchSet;
+use qdist::nalgebra::SMatrix;
 use qdist::support::Support;
 
-use crate::plot::{COORDINATES, INSIDE, SET, Scene, font};
+use crate::grasp::plot::{COORDINATES, INSIDE, SET, Scene, font};
 
 type Point = Vector<f64, 3>;
 

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use qdist::grasp::{Friction, WrenchSet};
 use qdist::{Outcome, Plan};
 
-use crate::csv::outcome_name;
-use crate::input::{Grasp, Reference, Set, norm_name};
-use crate::query::Found;
-use crate::sets::Sets;
-use crate::words;
+use crate::grasp::csv::outcome_name;
+use crate::grasp::input::{Grasp, Reference, Set, norm_name};
+use crate::grasp::query::Found;
+use crate::grasp::sets::Sets;
+use crate::grasp::words;
 
 /// Contacts, fingers and dimensions.
 pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> {

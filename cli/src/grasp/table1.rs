@@ -8,10 +8,10 @@ use std::io::Write;
 use qdist::Vector;
 use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm};
 
-use crate::gauges::{Q, Shape};
-use crate::input::Set;
-use crate::query::{self, Memory};
-use crate::sets::Sets;
+use crate::grasp::gauges::{Q, Shape};
+use crate::grasp::input::Set;
+use crate::grasp::query::{self, Memory};
+use crate::grasp::sets::Sets;
 use crate::{Trouble, written};
 
 /// What the paper prints for one set: d, iterations, seconds.

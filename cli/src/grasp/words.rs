@@ -7,7 +7,7 @@ use qdist::Vector;
 use qdist::grasp::{Norm, WrenchSet};
 use qdist::support::Support;
 
-use crate::sets::Part;
+use crate::grasp::sets::Part;
 
 /// Within 10 degrees of an axis, or of a plane of two.
 const ALONG: f64 = 0.985;

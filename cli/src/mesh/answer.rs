@@ -6,8 +6,8 @@ use std::time::Instant;
 use qdist::mesh::{Counters, DepthOptions, DepthSolver, Outcome, Watch};
 use qdist::nalgebra::Isometry3;
 
-use crate::bodies;
-use crate::input::{Kind, Known, Query};
+use crate::mesh::bodies;
+use crate::mesh::input::{Kind, Known, Query};
 
 pub const HEADER: &str = "query,metric,outcome,lower,upper,qw,qx,qy,qz,tx,ty,tz,collision_queries,contact_queries,ns";
 

@@ -7,8 +7,8 @@ use qdist::mesh::certificate::BuildOptions;
 use qdist::mesh::metric::Metric;
 use qdist::mesh::{Mesh, Model};
 
-use crate::input::{Kind, Query};
-use crate::read;
+use crate::mesh::input::{Kind, Query};
+use crate::mesh::read;
 
 #[derive(Default)]
 pub struct Bodies(BTreeMap<PathBuf, Model>);

@@ -7,18 +7,18 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use qdist::nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
 
-/// What is wrong, in words.
-type Trouble = String;
+use crate::Trouble;
 
 /// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, ValueEnum)]
 pub enum Kind {
-    /// The largest displacement.
+    /// The largest displacement of a point
     Disp,
-    /// The root mean square displacement: the root of the object norm sigma.
+    /// The root mean square displacement: the root of the object norm
     Sigma,
 }
 
@@ -177,7 +177,7 @@ mod tests {
     /// README's first command; the files that it names are there.
     #[test]
     fn the_fixture() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/meshes");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/meshes");
         let queries = queries(&folder.join("queries.json")).unwrap();
         assert_eq!(queries.len(), 4);
         for query in queries {

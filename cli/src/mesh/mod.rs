@@ -1,35 +1,26 @@
-//! How little must A move, rotations included, to be free of B? Asks the queries of a file, or poses of two mesh files.
+//! `qdist mesh`: how little must A move, rotations included, to be free of B? Asks the queries of a file, or poses of two mesh files.
 //!
-//! ```text
-//! cargo run --release --features std --example pdg -- --queries tests/data/meshes/queries.json
-//! cargo run --release --features std --example pdg -- pawn.obj cad.obj --pose 1,0,0,0,0.1,0,0.2 --picture out
-//! cargo run --release --features std --example pdg -- --table1          # of ../shared/data/meshes
-//! ```
-//!
-//! Prints a table beside the file's references, or with `--csv` one line for every query and metric. Lengths are those of the files; for `sigma` they
-//! are roots of the object norm. `lower` and `upper` bracket the depth, and the pose (x_B = R x_A + t) proves `upper`. All options are in `args.rs`,
-//! what a file may say is in `input.rs`. The exit code is 1 when input is wrong, 2 for the command line.
+//! All options are in `args.rs`, what a file may say is in `input.rs`.
 
 use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
-use std::process::ExitCode;
 
 use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver};
 
-mod answer;
+pub mod answer;
 mod args;
 mod bar;
-mod bodies;
-mod input;
+pub mod bodies;
+pub mod input;
 mod picture;
-mod read;
-mod seeds;
-mod table;
+pub mod read;
+pub mod seeds;
+pub mod table;
 mod table1;
 mod words;
 
 use answer::Row;
-use args::{Request, Source};
+pub use args::{Request, Source};
 use bar::Bar;
 use bodies::Bodies;
 use input::Query;
@@ -46,13 +37,15 @@ fn queries(source: &Source) -> Result<Vec<Query>, String> {
     }
 }
 
-fn run(request: &Request) -> Result<(), String> {
-    let queries = queries(&request.source)?;
+/// Answers on the standard output.
+pub fn run(request: &Request) -> Result<(), String> {
+    let source = request.source();
+    let queries = queries(&source)?;
     if let Some(folder) = &request.picture {
         std::fs::create_dir_all(folder).map_err(|e| format!("--picture: {}: {e}", folder.display()))?;
     }
-    let bar = Bar::new(queries.len() * request.kinds.len());
-    let bodies = match &request.source {
+    let bar = Bar::new(queries.len() * request.kinds().len());
+    let bodies = match &source {
         Source::File(file) | Source::Table1(file) => Bodies::of(&queries, |file| bar.say(&file.display().to_string()))
             .map_err(|trouble| format!("{}: {trouble}", file.display()))?,
         Source::Pair(files, _) => {
@@ -61,13 +54,13 @@ fn run(request: &Request) -> Result<(), String> {
             bodies
         }
     };
-    let named = match &request.source {
+    let named = match &source {
         Source::Pair(files, _) if files[0] != files[1] => files.iter().map(|f| (f.as_path(), bodies.get(f))).collect(),
         _ => bodies.iter().collect::<Vec<_>>(),
     };
     for (file, model) in named {
         let report = words::report(file, model);
-        if request.csv || !matches!(request.source, Source::Pair(..)) {
+        if request.csv || !matches!(source, Source::Pair(..)) {
             // Only what is wrong, and not between the answers.
             if !model.mesh().report().is_clean() {
                 eprint!("{report}");
@@ -77,7 +70,7 @@ fn run(request: &Request) -> Result<(), String> {
             let _ = write!(io::stdout(), "{report}");
         }
     }
-    match answer_all(request, &queries, &bodies, &bar) {
+    match answer_all(request, &source, &queries, &bodies, &bar) {
         // Who reads has seen enough.
         Err(e) if e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe) => Ok(()),
         answered => answered.map_err(|e| e.to_string()),
@@ -86,11 +79,12 @@ fn run(request: &Request) -> Result<(), String> {
 
 fn answer_all(
     request: &Request,
+    source: &Source,
     queries: &[Query],
     bodies: &Bodies,
     bar: &Bar,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let table1 = matches!(request.source, Source::Table1(_));
+    let table1 = matches!(source, Source::Table1(_));
     let mut out = BufWriter::new(io::stdout().lock());
     let readable = !request.csv && !table1 && !queries.is_empty();
     if request.csv {
@@ -98,7 +92,7 @@ fn answer_all(
     } else if readable {
         table::head(&mut out)?;
     }
-    let options = DepthOptions { effort: request.effort, seed: request.seed, ..DepthOptions::default() };
+    let options = DepthOptions { effort: request.effort(), seed: request.seed, ..DepthOptions::default() };
     let mut solvers: HashMap<_, (DepthSolver, ContactSamples)> = HashMap::new();
     let mut rows: Vec<Row> = Vec::new();
     for query in queries {
@@ -112,7 +106,7 @@ fn answer_all(
             (DepthSolver::new(a, b), samples)
         });
         let mut before = None;
-        for &kind in &request.kinds {
+        for &kind in request.kinds() {
             let name = format!("{} {}", query.id, kind.name());
             let mut poses = seeds::nearest(samples, solver.a(), kind, &query.pose);
             // No point moves more than DISP's pose says, so the object norm's depth is no more either.
@@ -127,7 +121,7 @@ fn answer_all(
                 row.write(&mut out)?;
             } else if readable {
                 table::line(&mut out, &row)?;
-                if matches!(request.source, Source::Pair(..)) {
+                if matches!(source, Source::Pair(..)) {
                     table::pose(&mut out, &row)?;
                 }
             }
@@ -139,30 +133,9 @@ fn answer_all(
     bar.finish();
     if table1 && !request.csv {
         table1::write(&mut out, queries, bodies, &rows)?;
-    } else if readable && queries.len() > 1 && !matches!(request.source, Source::Pair(..)) {
+    } else if readable && queries.len() > 1 && !matches!(source, Source::Pair(..)) {
         table::summary(&mut out, &rows)?;
     }
     out.flush()?;
     Ok(())
-}
-
-fn main() -> ExitCode {
-    if std::env::args().any(|argument| argument == "--help" || argument == "-h") {
-        let _ = writeln!(io::stdout(), "{}", args::USAGE);
-        return ExitCode::SUCCESS;
-    }
-    let request = match Request::parse(std::env::args().skip(1)) {
-        Ok(request) => request,
-        Err(trouble) => {
-            eprintln!("{trouble}\n{}", args::USAGE);
-            return ExitCode::from(2);
-        }
-    };
-    match run(&request) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(trouble) => {
-            eprintln!("{trouble}");
-            ExitCode::FAILURE
-        }
-    }
 }

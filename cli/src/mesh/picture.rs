@@ -11,9 +11,9 @@ use plotters::prelude::*;
 use qdist::mesh::{DepthOptions, DepthSolver, Mesh, Progress};
 use qdist::nalgebra::{Isometry3, Point2, Point3, Vector3};
 
-use crate::answer::Row;
-use crate::bodies;
-use crate::input::Query;
+use crate::mesh::answer::Row;
+use crate::mesh::bodies;
+use crate::mesh::input::Query;
 
 /// A panel's width and height; there are two by two.
 const PANEL: (u32, u32) = (1000, 860);
@@ -262,8 +262,8 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::answer;
-    use crate::input::Kind;
+    use crate::mesh::answer;
+    use crate::mesh::input::Kind;
     use qdist::mesh::Model;
 
     #[test]

@@ -11,8 +11,7 @@ use std::path::Path;
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 
-/// What is wrong, in words.
-type Trouble = String;
+use crate::Trouble;
 
 /// Vertices and triangles.
 #[derive(Clone, Debug, Default, PartialEq)]

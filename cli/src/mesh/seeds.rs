@@ -3,8 +3,8 @@
 use qdist::mesh::{ContactSamples, Model};
 use qdist::nalgebra::Isometry3;
 
-use crate::bodies;
-use crate::input::Kind;
+use crate::mesh::bodies;
+use crate::mesh::input::Kind;
 
 /// How many are seeds of a query.
 const NEAREST: usize = 6;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use crate::answer::Row;
-use crate::input::Kind;
+use crate::mesh::answer::Row;
+use crate::mesh::input::Kind;
 
 pub fn head(out: &mut impl Write) -> io::Result<()> {
     writeln!(

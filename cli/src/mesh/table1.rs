@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use crate::answer::Row;
-use crate::bodies::Bodies;
-use crate::input::{Kind, Query};
-use crate::table::quantile;
+use crate::mesh::answer::Row;
+use crate::mesh::bodies::Bodies;
+use crate::mesh::input::{Kind, Query};
+use crate::mesh::table::quantile;
 
 /// A column of the paper: the meshes' names, here and there, and milliseconds for DISP and sigma.
 struct Column {

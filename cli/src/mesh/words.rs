@@ -64,7 +64,7 @@ mod tests {
     const TRIANGLES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
     fn of(triangles: &[[u32; 3]]) -> String {
-        let model = crate::bodies::with_pieces(Model::new(&CORNERS, triangles).unwrap());
+        let model = crate::mesh::bodies::with_pieces(Model::new(&CORNERS, triangles).unwrap());
         report(Path::new("body.off"), &model)
     }
 

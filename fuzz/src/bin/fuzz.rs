@@ -1,6 +1,6 @@
 //! Random problems of every kind, checked against what must hold whatever the problem is.
 //!
-//!     cargo run --release --example fuzz -- --seconds 60 [--seed 1] [--case 17]
+//!     cargo run --release -p qdist-fuzz --bin fuzz -- --seconds 60 [--seed 1] [--case 17]
 //!
 //! Pairs of bodies, bodies and half spaces, hulls of two bodies against a third, sets and gauges.
 //! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned,
@@ -17,21 +17,18 @@
 //!
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 
-#[path = "../../../tests/common/mod.rs"]
-mod common;
-
-use common::dd::{BLUR, Dd, V3, dot, norm, v3};
-use common::dice::Dice;
-use common::exact::{body_value, pair_value, searched_upper};
-use common::hull::{ExactHull, signed_depth};
-use common::memory::{Memory, Seen, broken_promise};
-use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
 use qdist::support::{
     BoxShape, Ellipsoid, Failure, HalfSpace, Join, Linear, Margin, Points, Rigid, Sphere, Sum, Support,
 };
 use qdist::{Body, Options, Outcome, Plan, Real, Vector};
+use qdist_fuzz::common::dd::{BLUR, Dd, V3, dot, norm, v3};
+use qdist_fuzz::common::dice::Dice;
+use qdist_fuzz::common::exact::{body_value, pair_value, searched_upper};
+use qdist_fuzz::common::hull::{ExactHull, signed_depth};
+use qdist_fuzz::common::memory::{Memory, Seen, broken_promise};
+use qdist_fuzz::common::{self, BodyText, ShapeText};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};

@@ -1,6 +1,6 @@
 //! Random bodies and poses of every kind for the queries of meshes, checked against what must hold whatever they are.
 //!
-//!     cargo run --release --features std --example mesh_fuzz -- --seconds 60 [--seed 1] [--case 17]
+//!     cargo run --release -p qdist-fuzz --bin mesh_fuzz -- --seconds 60 [--seed 1] [--case 17]
 //!
 //! Bodies: boxes, deformed balls, rings, slots, soups; crumpled, flat, inverted, split at every edge, with triangles missing, repeated or without
 //! area; of sizes from 1e-150 to 1e150, far from their origin. Poses: at random, aligned, far away, no poses at all. For every answer:
@@ -12,19 +12,14 @@
 //!
 //! Finds are printed with their seed and case, and the exit code is 1.
 
-#[path = "../../../tests/common/mod.rs"]
-mod common;
-#[path = "../../../tests/mesh_common/mod.rs"]
-mod mesh_common;
-
-use common::dice::Dice;
-use mesh_common::*;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use qdist::mesh::certificate::{BuildOptions, Effort};
 use qdist::mesh::metric::Metric;
 use qdist::mesh::{
     Budget, ContactSamples, DepthOptions, DepthSolver, DepthTracker, MeshDepth, Model, Outcome, Pair, Screw, Stop, Walk,
 };
+use qdist_fuzz::common::dice::Dice;
+use qdist_fuzz::mesh_common::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 

@@ -1,6 +1,6 @@
 //! Random small meshes and poses, proper and broken, by the million: what must hold whatever they are. (`mesh_fuzz` looks longer at fewer.)
 //!
-//!     cargo run --release --features std --example mesh_fuzz_quick -- --cases 100000 [--seed 1] [--case 17]
+//!     cargo run --release -p qdist-fuzz --bin mesh_fuzz_quick -- --cases 100000 [--seed 1] [--case 17]
 //!
 //! A case is a mesh that was not there before and a pose. Meshes: solids, with holes, turned inside out, crumpled, flattened to sheets and
 //! needles, soups, indices out of range, no numbers; from 1e-60 to 1e60, one up to 1e6 times the other. Poses: overlapping,
@@ -14,19 +14,14 @@
 //!
 //! The first find is printed with its case, and the exit code is 1.
 
-#[path = "../../../tests/common/mod.rs"]
-mod common;
-#[path = "../../../tests/mesh_common/mod.rs"]
-mod mesh_common;
-
-use common::dice::Dice;
-use mesh_common::{Shape, cuboid, icosphere, l_shape, random_pose, slot, tetrahedron, torus};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use qdist::mesh::certificate::BuildOptions;
 use qdist::mesh::metric::Metric;
 use qdist::mesh::{
     Budget, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Model, Outcome, Pair, Screw, Walk,
 };
+use qdist_fuzz::common::dice::Dice;
+use qdist_fuzz::mesh_common::{self, Shape, cuboid, icosphere, l_shape, random_pose, slot, tetrahedron, torus};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 

@@ -1,0 +1,6 @@
+//! Random numbers and meshes made by code, which benches share with the tests.
+
+#[path = "../tests/common/mod.rs"]
+pub mod common;
+#[path = "../tests/mesh_common/mod.rs"]
+pub mod mesh_common;

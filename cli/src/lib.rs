@@ -1,0 +1,37 @@
+//! What the program `qdist` is made of: one module a subcommand, and in it what benches use as well, its reader, its question and its table.
+//!
+//! A subcommand is a `Request`, which clap fills from the command line and whose comments are its `--help`, and a function `run`, whose error is what
+//! is wrong, in words.
+
+pub mod depth;
+pub mod grasp;
+pub mod haptic;
+pub mod mesh;
+
+use std::io;
+
+/// What is wrong, in words.
+pub type Trouble = String;
+
+/// The reader of the output went away: that is how `| head` ends, and no trouble.
+pub const CLOSED: &str = "";
+
+/// What went wrong with the standard output.
+pub fn written(error: io::Error) -> Trouble {
+    if error.kind() == io::ErrorKind::BrokenPipe { CLOSED.into() } else { format!("standard output: {error}") }
+}
+
+#[cfg(test)]
+mod tests {
+    /// Numbers of JSON files are those that Rust reads, to the last bit. (Run alone, too: `cargo test -p qdist-cli`; what other packages ask of
+    /// serde_json counts for all that is built with them.)
+    #[test]
+    fn numbers_are_read_to_the_last_bit() {
+        let mut state = 1u64;
+        for _ in 0..1000 {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let text = format!("{:?}", f64::from_bits(0x3fb0_0000_0000_0000 | (state >> 12)));
+            assert_eq!(serde_json::from_str::<f64>(&text).unwrap().to_bits(), text.parse::<f64>().unwrap().to_bits());
+        }
+    }
+}
