@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use clap::Args;
 use qdist::support::{Hull, Support, graph_len};
-use qdist::{Depth, Options, Real, Solver, Workspace};
+use qdist::{Depth, HullFacet, Options, Real, Solver, Workspace, hull_facets, prepare_hull};
 
 use crate::{Trouble, written};
 use cases::{Case, Shape};
@@ -147,9 +147,9 @@ fn prepared<'a, T: Real>(
     words: &'a mut [u16],
 ) -> Result<Box<dyn Support<T, 3> + 'a>, Trouble> {
     if points.len() > PLAIN && shape.kind == "hull" {
-        let mut memory = Box::new(Workspace::<T, 3, 6000, 12100>::new());
+        let mut facets = vec![HullFacet::EMPTY; hull_facets(points.len())];
         // (A hull that cannot be prepared, a flat one say, is asked as it is.)
-        if let Ok(graph) = memory.solver().prepare_hull(points, words) {
+        if let Ok(graph) = prepare_hull(points, words, &mut facets, None) {
             return Ok(Box::new(Hull::new(points, graph).map_err(|error| format!("hull: {error}"))?));
         }
     }

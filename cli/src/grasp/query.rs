@@ -260,7 +260,7 @@ mod tests {
     /// the plane.
     #[test]
     fn a_plane_known_to_rounding() {
-        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
+        let turn = qdist::nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
         let finger = |x: f64| {
             let (n, o) = (turn * Vector::from([-x.signum(), 0.0, 0.0]), turn * Vector::from([0.0, 1.0, 0.0]));
             let contact =

@@ -124,8 +124,8 @@ pub fn worst(names: &[String], set: &WrenchSet<f64, Part>, u: &Vector<f64, 6>, t
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::SMatrix;
     use qdist::grasp::Primitive;
+    use qdist::nalgebra::SMatrix;
 
     use super::*;
 
