@@ -17,7 +17,7 @@
 //!   six, of the columns of its `R`.
 //!
 //! What else the shared data say (`source`, `description`, how a reference was found) is known and not read; so is every field whose name begins with an
-//! underscore. Any other field is an error ([`Field::only`]), and so is what contradicts itself. An error names grasp, contact and field.
+//! underscore. Any other field is an error (`Field::only`), and so is what contradicts itself. An error names grasp, contact and field.
 
 use std::collections::HashMap;
 
