@@ -901,7 +901,8 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
 typedef struct {
     // sizeof(qdist_options_f64).
     uint32_t struct_size;
-    // The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6 (`make figures`).
+    // The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
+    // (`make figures`), and 64 for each vertex of a polytopal Q.
     uint32_t max_iterations;
     // NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     qdist_interrupt interrupt;

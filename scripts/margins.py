@@ -63,16 +63,16 @@ polytope: visible facets | polytope/insert.rs | height > @tolerance@ | T::zero()
 conewise: points off | plan/conewise.rs | query.margin() * T::count(@3@ + | 0
 conewise: each halving | plan/conewise.rs | query.margin() * T::count(3 + @cone.depth()@) | 0
 
-rays: points off | plan/rays.rs | let margin = @query.margin()@ | T::zero()
-rays: crossings off | plan/rays.rs | + @rays.error@ + rays.least | T::zero()
-rays: vertices of Q off | plan/rays.rs | + @rays.least * query.gauge_error()@; | T::zero()
+rays: points off | plan/rays.rs | N>| @query.margin()@ + error | T::zero()
+rays: crossings off | plan/rays.rs | query.margin() + @error@ + least | T::zero()
+rays: vertices of Q off | plan/rays.rs | + @least * query.gauge_error()@; | T::zero()
 rays: rounding of the lower bound | plan/rays.rs | lower - @lower.abs() * (T::count(8) * T::ROUNDOFF)@ | T::zero()
-rays: loss in a ball of Q | plan/rays.rs | Ok(Some(@margin / inner@)) | T::zero()
+rays: loss in a ball of Q | plan/rays.rs | Ok(Some(@margin(query) / inner@)) | T::zero()
 rays: loss in a ball of A | plan/rays.rs | .map(|radius| @least * (margin / radius)@) | T::zero()
 rays: loss in a ball along a ray | plan/rays.rs | .map(|radius| @least * rest * (margin / radius)@) | T::zero()
-rays: ball of A, points off | plan/rays.rs | let around = radius.filter(|&radius| @radius > margin@) | true
-rays: ball along a ray, points off | plan/rays.rs | let along = radius.filter(|&radius| @radius > margin@) | true
-rays: ball along a ray, seen from there | plan/rays.rs | margin + @query.resolution()@; | T::zero()
+rays: ball of A, points off | plan/rays.rs | radius.filter(|&radius| @radius > margin@).map(|radius| least * (margin | true
+rays: ball along a ray, points off | plan/rays.rs | let along = along.filter(|&radius| @radius > margin@) | true
+rays: ball along a ray, seen from there | plan/rays.rs | margin(query) + @query.resolution()@; | T::zero()
 rays: ball of A, crossings off | plan/rays.rs | inradius - @rays.error@ | T::zero()
 rays: artificial corners | plan/ray.rs | if @!carried@ | false
 rays: negative weights | plan/ray.rs | let left = @(self.weights[i] - shares[i] * step).at_least(T::zero())@ | self.weights[i] - shares[i] * step

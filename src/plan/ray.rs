@@ -70,9 +70,9 @@ impl<T: Real, const N: usize> Ray<T, N> {
         Ray { from: *from, measures: false, ..Self::new(target, size) }
     }
 
-    /// What h_Q is at least along a direction, where it is worth knowing; else next to nothing.
+    /// What h_Q is at least along a direction; the largest number where Q need not be asked.
     pub fn floor(&self, direction: &Vector<T, N>) -> T {
-        if self.measures { direction.dot(&self.target) } else { T::TINY }
+        if self.measures { direction.dot(&self.target) } else { T::HUGE }
     }
 
     /// The ray along another target, if that pierces the same simplex.

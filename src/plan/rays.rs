@@ -42,6 +42,8 @@ pub(crate) struct Crossings<T, const N: usize> {
     pub stop: Stop,
     pub lower: T,
     pub witness: Simplex<T, N>,
+    /// The largest norm of a point until then.
+    pub reach: T,
 }
 
 /// Vertices of Q that are the origin, between two questions for the caller's deadline.
@@ -145,9 +147,8 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     /// What this pass has shown: is that the end?
     fn conclude(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         let rays = core::mem::replace(&mut self.rays, Rays::new());
-        let margin = query.margin() + rays.error + rays.least * query.gauge_error();
         let Some(witness) = rays.witness else { return Ok(true) };
-        let Some(loss) = self.cost_of_margin(query, rays.least, margin)? else { return Ok(true) };
+        let Some(loss) = self.cost_of_margin(query, rays.least, rays.error)? else { return Ok(true) };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
         if !(lower > T::zero()) {
@@ -155,7 +156,7 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         }
         let verdict =
             query.verdict(&Bracket { lower, upper: query.upper() }).filter(|_| query.verify().is_ok_and(|held| held));
-        self.found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness });
+        self.found = Some(Crossings { stop: verdict.unwrap_or(Stop::Rounding), lower, witness, reach: query.reach() });
         let is_last = self.again;
         self.again = !(self.gap > T::zero());
         (self.gap, self.reserve) = (T::zero(), loss * T::of(1.25));
@@ -163,24 +164,30 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         Ok(verdict.is_some() || is_last)
     }
 
-    /// What `margin` costs of the least crossing (see above); `None` when nothing of it is certain.
-    fn cost_of_margin(&mut self, query: &mut Query<'_, T, N>, least: T, margin: T) -> Result<Option<T>, Failure> {
+    /// What the margin costs of the least crossing (see above), whose points may be off by `error` beside; `None` when nothing of it is certain.
+    fn cost_of_margin(&mut self, query: &mut Query<'_, T, N>, least: T, error: T) -> Result<Option<T>, Failure> {
+        // Taken after the last question of each kind: where A does not know its extent, the margin is one of the points that were seen.
+        let margin = |query: &Query<'_, T, N>| query.margin() + error + least * query.gauge_error();
         let inner = query.inner_radius();
         if inner > T::zero() {
-            return Ok(Some(margin / inner));
+            return Ok(Some(margin(query) / inner));
         }
         let radius = ball_inside(query, &Vector::zeros(), T::one())?;
         self.at_edge = radius == Some(T::zero());
-        let around = radius.filter(|&radius| radius > margin).map(|radius| least * (margin / radius));
-        if !query.contains_origin() || around.is_some_and(|loss| loss <= query.slack() * T::of(0.25)) {
-            return Ok(around);
+        let around = |query: &Query<'_, T, N>| {
+            let margin = margin(query);
+            radius.filter(|&radius| radius > margin).map(|radius| least * (margin / radius))
+        };
+        let known = around(query);
+        if !query.contains_origin() || known.is_some_and(|loss| loss <= query.slack() * T::of(0.25)) {
+            return Ok(known);
         }
         let rest = T::one() - T::of(FAR);
-        let radius = balls_along(query, self.count, least * T::of(FAR), rest)?;
+        let along = balls_along(query, self.count, least * T::of(FAR), rest)?;
         // (What is seen from elsewhere is rounded once more.)
-        let margin = margin + query.resolution();
-        let along = radius.filter(|&radius| radius > margin).map(|radius| least * rest * (margin / radius));
-        Ok(around.into_iter().chain(along).reduce(T::at_most))
+        let margin = margin(query) + query.resolution();
+        let along = along.filter(|&radius| radius > margin).map(|radius| least * rest * (margin / radius));
+        Ok(around(query).into_iter().chain(along).reduce(T::at_most))
     }
 }
 

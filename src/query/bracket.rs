@@ -17,7 +17,11 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         let margin = self.margin_along(&self.direction);
         match self.ball {
             Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
-            None if self.apart => self.bounds.upper(self.height, margin, T::one(), T::zero()),
+            None if self.apart => {
+                let upper = self.bounds.upper(self.height, margin, T::one(), T::zero());
+                // (Points that were seen since may have shown that A knows its points too badly to be called apart.)
+                if upper >= T::zero() && self.bounds.unknown_extent { T::HUGE } else { upper }
+            }
             None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
         }
     }
@@ -136,7 +140,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// The better of a lower bound and the one that was known before, unless an upper bound has disproved that.
     pub fn floored(&self, lower: T) -> T {
-        if self.floor > T::zero() && self.floor <= self.ratio { lower.at_least(self.floor) } else { lower }
+        let holds = self.floor > T::zero() && self.floor <= self.ratio && self.still_holds(self.floor_reach);
+        if holds { lower.at_least(self.floor) } else { lower }
     }
 
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even

@@ -120,6 +120,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     pub plan: Plan,
     /// A lower bound of d that holds anyway; 0: none that says anything.
     floor: T,
+    /// The largest norm of a point when that was proved.
+    floor_reach: T,
     /// The limit that was reached: from then on nothing is added.
     stopped: Option<Stop>,
     /// Says when to stop.
@@ -185,6 +187,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             dimension: N,
             plan: Plan::Expansion,
             floor: T::zero(),
+            floor_reach: T::HUGE,
             stopped: None,
             interrupt: None,
         };
@@ -216,7 +219,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// A bound in the caller's units, rounded outwards where it becomes subnormal.
     fn unscaled(&self, value: T, outward: T) -> T {
-        if self.scale == T::one() || value.abs() >= T::HUGE {
+        if self.scale == T::one() || value.abs() >= T::HUGE || value.is_zero() {
             return value;
         }
         let value = value / self.scale;
@@ -246,7 +249,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Tells the query a lower bound of d that holds anyway, in the caller's units. (Positive ones end it earlier.)
     pub fn know(&mut self, lower: T) {
         if lower > T::zero() && lower < T::HUGE {
-            self.raise(lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF);
+            self.raise(lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF, T::HUGE);
         }
     }
 
@@ -256,9 +259,16 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.iterations = self.iterations.saturating_add(before.iterations);
     }
 
-    /// The same in scaled units.
-    pub fn raise(&mut self, lower: T) {
-        self.floor = self.floor.at_least(lower);
+    /// The same in scaled units, for a bound that was proved when the largest norm of a point was `reach`.
+    pub fn raise(&mut self, lower: T, reach: T) {
+        if lower > self.floor && self.still_holds(reach) {
+            (self.floor, self.floor_reach) = (lower, reach);
+        }
+    }
+
+    /// Are margins what they were when the largest norm of a point was `reach`? Where A does not know its extent, its error grows with that.
+    pub fn still_holds(&self, reach: T) -> bool {
+        !self.bounds.unknown_extent || self.reach <= reach
     }
 
     /// The direction to look in first.
@@ -282,7 +292,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         self.support_beyond(direction, T::zero())
     }
 
-    /// The same where h_Q is at least `floor`: if that is above 0 and makes the direction no better than the best one, Q is not asked.
+    /// The same where h_Q is at least `floor`: if that is above 0 and makes the direction no better than the best one, Q is not asked; nor for the
+    /// largest number.
     pub fn support_beyond(&mut self, direction: &Vector<T, N>, floor: T) -> Result<(Vertex<T, N>, T), Failure> {
         self.work.add(Work::<N>::STEP);
         self.support_calls = self.support_calls.saturating_add(1);
@@ -331,7 +342,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
                 (self.apart, self.ratio) = (true, T::HUGE);
             }
             (T::one(), height)
-        } else if floor > T::zero() && !(top < self.ratio * floor) {
+        } else if floor >= T::HUGE || floor > T::zero() && !(top < self.ratio * floor) {
             return Ok(());
         } else {
             self.work.add(self.work.gauge());
@@ -535,7 +546,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// Is the origin certainly outside the core, by this support value?
     #[inline]
     pub fn is_outside(&self, direction: &Vector<T, N>, height: T) -> bool {
-        height < T::zero() && height + self.margin_along(direction) < T::zero()
+        height < T::zero() && height + self.margin_along(direction) < T::zero() && !self.contains_origin()
     }
 
     /// The limit that has been reached.

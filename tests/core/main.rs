@@ -11,6 +11,7 @@ mod certificates;
 mod closed_forms;
 mod errors;
 mod exact_margins;
+mod far_points;
 mod half_spaces;
 mod house;
 mod hulls;

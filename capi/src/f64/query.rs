@@ -47,7 +47,8 @@ use qdist::{Simplex, Vertex};
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6 (`make figures`).
+    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
+    /// (`make figures`), and 64 for each vertex of a polytopal Q.
     pub max_iterations: u32,
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     pub interrupt: qdist_interrupt,

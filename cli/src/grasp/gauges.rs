@@ -131,7 +131,7 @@ impl Q {
         if ones { self.kind().into() } else { format!("{} {}", self.kind(), numbers.join(" ")) }
     }
 
-    /// A polytope or a segment: one ray a vertex is all that a query takes.
+    /// A polytope or a segment: one ray a vertex may be all that a query takes.
     pub fn is_polytope(&self) -> bool {
         !matches!(self.shape, Shape::Ball(_) | Shape::Ellipsoid(_))
     }
