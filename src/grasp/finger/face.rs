@@ -19,11 +19,7 @@
 
 use super::super::svd::{Triangle, dot};
 use super::program::Program;
-use super::step::step;
 use crate::scalar::Real;
-
-/// A point of a face, and how deep it is inside of the cones.
-type Inside<T> = Program<T, MAX_CONTACTS, { WIDTH + 1 }, { 2 * (WIDTH + 1) }>;
 
 /// The largest number of contacts of a finger.
 pub const MAX_CONTACTS: usize = 4;
@@ -110,47 +106,7 @@ impl<T: Real> Face<T> {
         if self.margin > T::of(0.5) {
             return None;
         }
-        let program = self.depth_inside();
-        let (mut objective, mut start) = ([zero; WIDTH + 1], [zero; WIDTH + 1]);
-        (objective[WIDTH], start[WIDTH]) = (one, -T::of(0.5));
-        let mut cone_duals = [[zero; 4]; MAX_CONTACTS];
-        let pressing = self.forces.iter().filter(|map| presses(map)).count();
-        for i in 0..MAX_CONTACTS {
-            if presses(&self.forces[i]) {
-                cone_duals[i][0] = T::count(pressing).recip();
-            }
-        }
-        let mut it = program.start(start, cone_duals, [T::of(0.25); 2 * (WIDTH + 1)]);
-        for (d, rest) in program.residual(&objective, &it).iter().enumerate() {
-            it.row_duals[2 * d] += zero.at_least(*rest);
-            it.row_duals[2 * d + 1] += zero.at_least(-*rest);
-        }
-        for _ in 0..STEPS {
-            let (t, gap) = (it.z[WIDTH], program.gap(&it));
-            if t > tolerance && gap < T::of(0.25) * t || gap < T::ROUNDOFF {
-                break;
-            }
-            let Some(next) = step(&program, &objective, &it) else { break };
-            it = next;
-        }
-        let [point @ .., _] = it.z;
-        self.set_inside(point);
-        if self.margin > tolerance {
-            return None;
-        }
-        let mut strongest = (0, [zero; 4]);
-        for i in 0..MAX_CONTACTS {
-            if presses(&self.forces[i]) && it.cone_duals[i][0] > strongest.1[0] {
-                strongest = (i, it.cone_duals[i]);
-            }
-        }
-        Some(strongest)
-    }
-
-    /// The program that looks for the point deepest inside of all cones, in a box.
-    fn depth_inside(&self) -> Inside<T> {
-        let (zero, one) = (T::zero(), T::one());
-        let mut program = Inside::<T> {
+        let mut program = Program::<T, MAX_CONTACTS, { WIDTH + 1 }, { 2 * (WIDTH + 1) }> {
             cones: [[[zero; WIDTH + 1]; 4]; MAX_CONTACTS],
             rows: [[zero; WIDTH + 1]; 2 * (WIDTH + 1)],
             bounds: [zero; 2 * (WIDTH + 1)],
@@ -171,7 +127,40 @@ impl<T: Real> Face<T> {
                 (program.bounds[2 * d], program.bounds[2 * d + 1]) = (one, one);
             }
         }
-        program
+        let (mut objective, mut start) = ([zero; WIDTH + 1], [zero; WIDTH + 1]);
+        (objective[WIDTH], start[WIDTH]) = (one, -T::of(0.5));
+        let mut cone_duals = [[zero; 4]; MAX_CONTACTS];
+        let pressing = self.forces.iter().filter(|map| presses(map)).count();
+        for i in 0..MAX_CONTACTS {
+            if presses(&self.forces[i]) {
+                cone_duals[i][0] = T::count(pressing).recip();
+            }
+        }
+        let mut it = program.start(start, cone_duals, [T::of(0.25); 2 * (WIDTH + 1)]);
+        for (d, rest) in program.residual(&objective, &it).iter().enumerate() {
+            it.row_duals[2 * d] += zero.at_least(*rest);
+            it.row_duals[2 * d + 1] += zero.at_least(-*rest);
+        }
+        for _ in 0..STEPS {
+            let (t, gap) = (it.z[WIDTH], program.gap(&it));
+            if t > tolerance && gap < T::of(0.25) * t || gap < T::ROUNDOFF {
+                break;
+            }
+            let Some(next) = program.step(&objective, &it) else { break };
+            it = next;
+        }
+        let [point @ .., _] = it.z;
+        self.set_inside(point);
+        if self.margin > tolerance {
+            return None;
+        }
+        let mut strongest = (0, [zero; 4]);
+        for i in 0..MAX_CONTACTS {
+            if presses(&self.forces[i]) && it.cone_duals[i][0] > strongest.1[0] {
+                strongest = (i, it.cone_duals[i]);
+            }
+        }
+        Some(strongest)
     }
 
     fn set_inside(&mut self, z: [T; WIDTH]) {

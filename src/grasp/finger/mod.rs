@@ -1,9 +1,7 @@
 //! A finger as a whole: contacts that share their joints, and what the joints can bear.
 
 mod face;
-mod lorentz;
 mod program;
-mod step;
 mod tuples;
 
 pub use face::MAX_CONTACTS;

@@ -22,7 +22,6 @@ use super::super::svd::dot;
 use super::UNSOLVED;
 use super::face::{Face, MAX_CONTACTS, WIDTH, presses};
 use super::program::{Iterate, Program};
-use super::step::step;
 use crate::math::{Accumulator, Vector, norm};
 use crate::scalar::Real;
 use crate::support::Failure;
@@ -187,7 +186,7 @@ impl<T: Real> Tuples<T> {
             if upper - lower <= T::count(CLOSE) * T::ROUNDOFF {
                 break;
             }
-            let Some(next) = step(&program, &b, &it) else { break };
+            let Some(next) = program.step(&b, &it) else { break };
             it = next;
         }
         if !(upper - lower <= self.gap) {
