@@ -43,6 +43,7 @@ use super::wrench_set::Norm;
 use crate::math::{Vector, norm, unit};
 use crate::qset::Segment;
 use crate::scalar::Real;
+use crate::support::failure::EMPTY;
 use crate::support::{Failure, Points, Support};
 
 /// Where the edges of a pyramid are, in units of the cone: x on the unit circle for hard contacts, on the unit sphere for soft ones, for
@@ -224,7 +225,7 @@ impl<T: Real> Support<T, 6> for PyramidalCone<'_, T> {
     /// # Errors
     /// The empty set has no point.
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
-        self.points.as_ref().ok_or(Failure(crate::support::failure::EMPTY))?.support(u)
+        self.points.as_ref().ok_or(Failure(EMPTY))?.support(u)
     }
     fn extent(&self) -> T {
         self.points.as_ref().map_or(T::zero(), |points| points.extent() + self.rounding)

@@ -9,6 +9,7 @@ use super::numbers::usable;
 use super::svd::dot;
 use crate::math::{Vector, norm, unit};
 use crate::scalar::Real;
+use crate::support::failure::EMPTY;
 use crate::support::{Failure, Support};
 
 /// A primitive wrench set W_i = { center + disc x : |x| <= 1 } in R^6 (paper, eq. 6): an ellipsoid of at most three
@@ -149,7 +150,7 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
     /// The empty set has no point.
     fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
         if self.is_empty() {
-            return Err(Failure(crate::support::failure::EMPTY));
+            return Err(Failure(EMPTY));
         }
         Ok(self.point(&self.farthest(&near_unit(u))))
     }

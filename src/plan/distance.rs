@@ -1,5 +1,5 @@
 //! The point of a convex set nearest to the origin: the Gilbert-Johnson-Keerthi iteration [20], with Wolfe's
-//! sub-problem (module [`simplex`](crate::simplex)).
+//! sub-problem (module [`simplex`](crate::polytope::simplex)).
 //!
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose
 //! cores are points or segments, and to bound d from below when the origin lies on the boundary.
@@ -9,6 +9,7 @@ use crate::math::{Vector, norm};
 use crate::polytope::simplex::{Simplex, Vertex};
 use crate::qset::Gauge;
 use crate::scalar::Real;
+use crate::support::failure::EMPTY;
 use crate::support::{Failure, Support, total};
 
 /// Where the iteration ended.
@@ -95,7 +96,7 @@ impl<T: Real, const N: usize> Cloud<'_, T, N> {
                 best = Some((height, vertex));
             }
         }
-        let (_, vertex) = best.ok_or(Failure(crate::support::failure::EMPTY))?;
+        let (_, vertex) = best.ok_or(Failure(EMPTY))?;
         Ok(Vertex { point: vertex.point - self.origin, witness: vertex.witness })
     }
 }

@@ -29,6 +29,7 @@ use crate::query::Query;
 use crate::query::answer::Stop;
 use crate::scalar::Real;
 use crate::support::Failure;
+use crate::support::failure::NOT_FINITE;
 
 /// A query that may be cut short begins with a pass to this share of d, for an early lower bound. The last pass is one with room for what the
 /// lower bound loses to rounding, where that was too much.
@@ -205,7 +206,7 @@ fn next_target<T: Real, const N: usize>(
         *index += 1;
         query.work.add(1);
         if !finite(&target) {
-            return Err(Failure(crate::support::failure::NOT_FINITE));
+            return Err(Failure(NOT_FINITE));
         }
         if target.iter().any(|&x| x != T::zero()) {
             return Ok(Some(target));

@@ -7,6 +7,7 @@ use crate::polytope::simplex::{Simplex, Vertex};
 use crate::query::answer::{Answer, Outcome, Stop};
 use crate::scalar::Real;
 use crate::support::Failure;
+use crate::support::failure::NOT_FINITE;
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Checks the direction that is about to be reported without shortcuts. False when that raises the upper bound;
@@ -99,7 +100,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             stop
         } else {
             witness = Simplex::new(Vertex::empty());
-            Stop::Failed(crate::support::failure::NOT_FINITE)
+            Stop::Failed(NOT_FINITE)
         };
         let upper = self.upper();
         let mut lower = self.floored(lower);

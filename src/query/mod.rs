@@ -7,6 +7,7 @@ use crate::polytope::simplex::Vertex;
 use crate::qset::Gauge;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::scalar::Real;
+use crate::support::failure::{NOT_FINITE, TOO_LARGE};
 use crate::support::{Failure, Support};
 
 pub(crate) mod answer;
@@ -148,7 +149,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let inner = if ball.is_some() { T::zero() } else { q.inner_radius() };
         let sane = are_lengths(&[radius, extent, support_error, gauge_error, inner]);
         let sane = sane && per_ball.finite() && per_ball > T::zero();
-        let checked = if sane { Ok(()) } else { Err(Failure(crate::support::failure::NOT_FINITE)) };
+        let checked = if sane { Ok(()) } else { Err(Failure(NOT_FINITE)) };
         // (The answer to a query that is not run is made of them too.)
         let [radius, extent, support_error] = if sane { [radius, extent, support_error] } else { [T::zero(); 3] };
         let query = Query {
@@ -178,10 +179,11 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             is_thin: false,
             exhaustive: false,
             iterations: 0,
-            limit: match options.max_iterations {
-                0 => MAX_ITERATIONS.saturating_add(MAX_ITERATIONS_PER_VERTEX.saturating_mul(q.vertex_count() as u32)),
-                limit => limit,
-            },
+            limit: options.limit().saturating_add(if options.max_iterations == 0 {
+                MAX_ITERATIONS_PER_VERTEX.saturating_mul(q.vertex_count() as u32)
+            } else {
+                0
+            }),
             support_calls: 0,
             work: Work::new(q.vertex_count()),
             dimension: N,
@@ -320,11 +322,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     fn see(&mut self, point: &Vector<T, N>) -> Result<(), Failure> {
         let squared = point.dot(point);
         if !squared.finite() {
-            return Err(Failure(if finite(point) {
-                crate::support::failure::TOO_LARGE
-            } else {
-                crate::support::failure::NOT_FINITE
-            }));
+            return Err(Failure(if finite(point) { TOO_LARGE } else { NOT_FINITE }));
         }
         if squared > self.reach * self.reach {
             self.reach = squared.root();
@@ -402,11 +400,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             Some(radius) => Ok(radius),
             None => {
                 let value = self.q.value(direction)?;
-                if value.finite() && value >= T::zero() {
-                    Ok(value)
-                } else {
-                    Err(Failure(crate::support::failure::NOT_FINITE))
-                }
+                if value.finite() && value >= T::zero() { Ok(value) } else { Err(Failure(NOT_FINITE)) }
             }
         }
     }

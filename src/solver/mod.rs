@@ -19,6 +19,7 @@ use crate::qset::Gauge;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::query::{Options, Query};
 use crate::scalar::Real;
+use crate::support::failure::EMPTY;
 use crate::support::{Failure, Support};
 
 /// Solves queries in one piece of borrowed memory. Made by [`Workspace`](crate::solver::workspace::Workspace) or
@@ -239,13 +240,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let near = nearest(
             first,
             axes.as_ref(),
-            |u| {
-                shared
-                    .try_borrow_mut()
-                    .map_err(|_| Failure(crate::support::failure::EMPTY))?
-                    .support(u)
-                    .map(|(vertex, _)| vertex)
-            },
+            |u| shared.try_borrow_mut().map_err(|_| Failure(EMPTY))?.support(u).map(|(vertex, _)| vertex),
             |simplex, distance| {
                 let Ok(mut query) = shared.try_borrow_mut() else { return true };
                 let bracket = Bracket { lower: query.lower_from_simplex(simplex, distance), upper: query.upper() };

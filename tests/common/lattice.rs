@@ -175,6 +175,19 @@ pub fn planes(points: &[Point]) -> Vec<(Wide, i128)> {
     found
 }
 
+/// The least crossing of the rays along `vertices` with the hull's surface: d for Q the hull of the origin and these. `None` where there is none, or not
+/// above 0, or the hull is flat or not around the origin.
+pub fn crossing(points: &[Point], vertices: &[Point]) -> Option<Dd> {
+    let planes = planes(points);
+    if planes.iter().any(|(_, k)| *k < 0) {
+        return None;
+    }
+    let along = |n: &Wide, v: &Point| (0..3).map(|i| n[i] * i128::from(v[i])).sum::<i128>();
+    let pairs = planes.iter().flat_map(|(n, k)| vertices.iter().map(move |v| (*k, along(n, v))));
+    let d = pairs.filter(|(_, a)| *a > 0).map(|(k, a)| exact(k) / exact(a)).reduce(Dd::min)?;
+    (d > Dd::ZERO).then_some(d)
+}
+
 /// Distance of the origin from the hull: the least over its points, edges and triangles.
 pub fn distance(points: &[Point]) -> Dd {
     let points: Vec<Wide> = points.iter().map(wide).collect();

@@ -7,7 +7,7 @@ use crate::common;
 use common::dd::Dd;
 use common::dice::Dice;
 use common::lattice::{
-    Lattice, Lean, Leaning, Point, ball, cuboid, exact, moved, planes, slab, symmetric, truth, truth_in_plane,
+    Lattice, Lean, Leaning, Point, ball, crossing, cuboid, exact, moved, slab, symmetric, truth, truth_in_plane,
 };
 use nalgebra::Matrix3;
 use qdist::internal::{Axes, Bounds};
@@ -308,12 +308,7 @@ fn segments_from_a_corner<T: Real>(seed: u64, long: i64) {
         let count = 2 + dice.below(3);
         let end: Point = std::array::from_fn(|i| points[..count].iter().map(|p| p[i]).sum());
         points.push([0; 3]);
-        let along = |n: &[i128; 3]| (0..3).map(|i| n[i] * i128::from(end[i])).sum::<i128>();
-        let limits = planes(&points).into_iter().filter(|(n, _)| along(n) > 0);
-        let d = limits.fold(Dd::new(f64::MAX), |d, (n, k)| d.min(exact(k) / exact(along(&n))));
-        if !(d > Dd::ZERO && d < Dd::new(f64::MAX)) {
-            continue; // flat
-        }
+        let Some(d) = crossing(&points, &[end]) else { continue };
         let e = dice.pick(&[-1.0, 1.0]) * dice.decade(-4.0, -1.0);
         let lean = dice.pick(&[Lean::None, Lean::By(e)]);
         let set = Lattice { lean, ..Lattice::new(points) };

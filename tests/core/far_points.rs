@@ -4,25 +4,22 @@ use crate::common;
 
 use common::dd::Dd;
 use common::dice::Dice;
-use common::lattice::{Point, exact, planes};
+use common::lattice::{Lattice, Lean, Point, crossing};
 use common::memory::Memory;
 use qdist::qset::Vertices;
 use qdist::support::{Failure, Support};
 use qdist::{Options, Real, Vector};
 use std::cell::Cell;
 
-/// Integer points, told with an error, as large as a set of unknown extent may make it for its farthest point.
+/// Integer points, told with an error, as large as a set of unknown extent may make it for its farthest point; and the largest norm that was seen.
 struct Off {
-    points: Vec<Point>,
-    by: f64,
+    set: Lattice,
     seen: Cell<f64>,
 }
 
 impl<T: Real> Support<T, 3> for Off {
     fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
-        let height = |p: &Point| (0..3).fold(Dd::ZERO, |s, i| s + Dd::product(u[i].to_f64(), p[i] as f64));
-        let far = self.points.iter().reduce(|a, b| if height(b) > height(a) { b } else { a }).unwrap();
-        let point = Vector::from(far.map(|x| T::of(x as f64))) + u * (T::of(self.by) / u.dot(u).root());
+        let point = Support::<T, 3>::support(&self.set, u)?;
         self.seen.set(self.seen.get().max(point.dot(&point).root().to_f64()));
         Ok(point)
     }
@@ -31,27 +28,16 @@ impl<T: Real> Support<T, 3> for Off {
     }
 }
 
-fn crossing(points: &[Point], vertices: &[Point]) -> Option<Dd> {
-    let planes = planes(points);
-    if planes.is_empty() || planes.iter().any(|(_, k)| *k < 0) {
-        return None; // flat, or not around the origin
-    }
-    let along = |n: &[i128; 3], v: &Point| (0..3).map(|i| n[i] * i128::from(v[i])).sum::<i128>();
-    let pairs = planes.iter().flat_map(|(n, k)| vertices.iter().map(move |v| (*k, along(n, v))));
-    let d = pairs.filter(|(_, a)| *a > 0).map(|(k, a)| exact(k) / exact(a)).reduce(Dd::min)?;
-    (d > Dd::ZERO).then_some(d)
-}
-
 fn ask<T: Real>(points: Vec<Point>, vertices: &[Point], far: f64, what: &str) -> usize {
     let Some(d) = crossing(&points, vertices) else { return 0 };
     let list: Vec<[T; 3]> = vertices.iter().map(|v| v.map(|x| T::of(x as f64))).collect();
     let Ok(q) = Vertices::new(&list) else { return 0 };
-    let mut set = Off { points, by: 0.0, seen: Cell::new(0.0) };
+    let mut set = Off { set: Lattice::new(points), seen: Cell::new(0.0) };
     let (mut least, mut asked) = (Memory::new::<T, 3>(4, 6), 0);
     for sign in [1.0, -1.0] {
         for relative in [T::RELATIVE_TOLERANCE, T::of(1e-3), T::of(0.3)] {
             for max_iterations in [0, 500] {
-                set.by = sign * 40.0 * T::ROUNDOFF.to_f64() * far;
+                set.set.lean = Lean::By(sign * 40.0 * T::ROUNDOFF.to_f64() * far);
                 set.seen.set(0.0);
                 let options = Options { relative, max_iterations, ..Options::default() };
                 let answer = least.solver::<T, 3>().solve(&set, &q, &options);

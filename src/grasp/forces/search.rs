@@ -8,6 +8,7 @@ use super::{ForceOptions, ForceOutcome, Forces, precision};
 use crate::math::{Vector, finite, norm, unit};
 use crate::polytope::simplex::Vertex;
 use crate::scalar::Real;
+use crate::support::failure::NOT_FINITE;
 use crate::support::{Failure, Support};
 use heapless::Vec;
 
@@ -52,7 +53,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
                 axis[i] = sign;
                 let value = set.support(&axis)?.dot(&axis);
                 if !value.finite() {
-                    return Err(Failure(crate::support::failure::NOT_FINITE));
+                    return Err(Failure(NOT_FINITE));
                 }
                 reach[i] = reach[i].at_least(value);
             }
@@ -98,7 +99,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
     fn point(&self, direction: &Vector<T, 6>) -> Result<Vertex<T, 6>, Failure> {
         let point = self.set.support(direction)?;
         if !finite(&point) {
-            return Err(Failure(crate::support::failure::NOT_FINITE));
+            return Err(Failure(NOT_FINITE));
         }
         Ok(Vertex { point: point.component_div(&self.rows), witness: *direction })
     }
