@@ -78,8 +78,8 @@ static void layout(void) {
     CHECK(sizeof(qdist_plan) == 4 && offsetof(qdist_options_f64, interrupt) == 8);
     CHECK(offsetof(qdist_options_f64, absolute) == 8 + 2 * sizeof(void *));
     CHECK(sizeof(qdist_options_f64) == 8 + 2 * sizeof(void *) + 3 * 8 + 8 + 6 * 8);
-    CHECK(offsetof(qdist_gauge_f64, extent) == 5 * sizeof(void *) && offsetof(qdist_set_f64, radius) == 4 * sizeof(void *));
-    CHECK(sizeof(qdist_gauge_f64) == 5 * sizeof(void *) + 3 * 8 + 8 && sizeof(qdist_gauge_f32) >= 5 * sizeof(void *) + 20);
+    CHECK(offsetof(qdist_unit_f64, extent) == 5 * sizeof(void *) && offsetof(qdist_set_f64, radius) == 4 * sizeof(void *));
+    CHECK(sizeof(qdist_unit_f64) == 5 * sizeof(void *) + 3 * 8 + 8 && sizeof(qdist_unit_f32) >= 5 * sizeof(void *) + 20);
     CHECK(sizeof words >= QDIST_WORKSPACE_BYTES_F64(6, 7, 12) && sizeof graph == 2 * 60);
 }
 
@@ -111,8 +111,8 @@ int main(int argc, char **argv) {
     if (argc > 1) {
         printf("qdist_depth_f64 %u, qdist_result_f64 %u, qdist_body_f64 %u bytes\n", (unsigned)sizeof(qdist_depth_f64),
                (unsigned)sizeof(qdist_result_f64), (unsigned)sizeof(qdist_body_f64));
-        printf("qdist_options_f64 %u, qdist_gauge_f64 %u, qdist_tracker_f64 %u bytes\n", (unsigned)sizeof(qdist_options_f64),
-               (unsigned)sizeof(qdist_gauge_f64), (unsigned)sizeof(qdist_tracker_f64));
+        printf("qdist_options_f64 %u, qdist_unit_f64 %u, qdist_tracker_f64 %u bytes\n", (unsigned)sizeof(qdist_options_f64),
+               (unsigned)sizeof(qdist_unit_f64), (unsigned)sizeof(qdist_tracker_f64));
         printf("solver 3-D (64, 128): f64 %u, f32 %u bytes\n", (unsigned)QDIST_WORKSPACE_BYTES_F64(3, 64, 128),
                (unsigned)QDIST_WORKSPACE_BYTES_F32(3, 64, 128));
         return 0;

@@ -218,17 +218,17 @@ static void lists(void) {
     REFUSES(hull_large, &large, QDIST_ERROR_NULL);
 }
 
-static void sets_and_gauges(void) {
+static void sets_and_units(void) {
     qdist_points_f64 list = {corners, 4, 3};
     qdist_set_f64 a, b, made, before;
     qdist_pair_f64 pair = {&a, &b, 3};
     double matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     qdist_linear_f64 map = {&a, matrix, {0, 0, 0, 0, 0, 0}, 3, 3};
-    qdist_gauge_f64 gauge, gauge_before;
-    qdist_box_gauge_f64 cuboid = {{1, 1, 1, 0, 0, 0}, 3};
-    qdist_cross_gauge_f64 cross = {{1, 1, 1, 0, 0, 0}, 3};
-    qdist_ellipsoid_gauge_f64 egg = {{1, 1, 1, 0, 0, 0}, matrix, 3};
-    qdist_segment_gauge_f64 ray = {{1, 1, 1, 0, 0, 0}, 3};
+    qdist_unit_f64 unit, unit_before;
+    qdist_box_unit_f64 cuboid = {{1, 1, 1, 0, 0, 0}, 3};
+    qdist_cross_unit_f64 cross = {{1, 1, 1, 0, 0, 0}, 3};
+    qdist_ellipsoid_unit_f64 egg = {{1, 1, 1, 0, 0, 0}, matrix, 3};
+    qdist_segment_unit_f64 ray = {{1, 1, 1, 0, 0, 0}, 3};
     double direction[6] = {1, 0, 0, 0, 0, 0}, point[6];
     unsigned k;
 
@@ -252,41 +252,41 @@ static void sets_and_gauges(void) {
     CHECK(qdist_set_sum_f64(NULL, &pair) == QDIST_ERROR_NULL && qdist_set_sum_f64(&made, NULL) == QDIST_ERROR_NULL);
     matrix[4] = NAN;
     CHECK(qdist_set_linear_f64(&made, &map) == QDIST_ERROR_NONFINITE);
-    CHECK(qdist_gauge_ellipsoid_f64(&gauge, &egg) == QDIST_ERROR_NONFINITE);
+    CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_NONFINITE);
     matrix[4] = 1, map.rows = 1;
     CHECK(qdist_set_linear_f64(&made, &map) == QDIST_ERROR_DIMENSION);
     map.rows = 3, map.matrix = NULL;
     CHECK(qdist_set_linear_f64(&made, &map) == QDIST_ERROR_NULL);
     CHECK(memcmp(&made, &before, sizeof made) == 0);
 
-    memset(&gauge, 0x55, sizeof gauge);
-    gauge_before = gauge;
-    CHECK(qdist_gauge_ball_f64(&gauge, 0) == QDIST_ERROR_ARGUMENT && qdist_gauge_ball_f64(&gauge, -1) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_gauge_ball_f64(&gauge, NAN) == QDIST_ERROR_NONFINITE && qdist_gauge_ball_f64(NULL, 1) == QDIST_ERROR_NULL);
+    memset(&unit, 0x55, sizeof unit);
+    unit_before = unit;
+    CHECK(qdist_unit_ball_f64(&unit, 0) == QDIST_ERROR_ARGUMENT && qdist_unit_ball_f64(&unit, -1) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_ball_f64(&unit, NAN) == QDIST_ERROR_NONFINITE && qdist_unit_ball_f64(NULL, 1) == QDIST_ERROR_NULL);
     matrix[0] = 2;
-    CHECK(qdist_gauge_ellipsoid_f64(&gauge, &egg) == QDIST_ERROR_ROTATION);
+    CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_ROTATION);
     matrix[0] = 1;
     cuboid.dimension = 1, cross.dimension = 7, egg.dimension = 0, ray.dimension = 100;
-    CHECK(qdist_gauge_box_f64(&gauge, &cuboid) == QDIST_ERROR_DIMENSION);
-    CHECK(qdist_gauge_cross_f64(&gauge, &cross) == QDIST_ERROR_DIMENSION);
-    CHECK(qdist_gauge_ellipsoid_f64(&gauge, &egg) == QDIST_ERROR_DIMENSION);
-    CHECK(qdist_gauge_segment_f64(&gauge, &ray) == QDIST_ERROR_DIMENSION);
-    CHECK(isnan(qdist_segment_gauge_value_f64(&ray, direction)));
+    CHECK(qdist_unit_box_f64(&unit, &cuboid) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_unit_cross_f64(&unit, &cross) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_unit_segment_f64(&unit, &ray) == QDIST_ERROR_DIMENSION);
+    CHECK(isnan(qdist_segment_unit_value_f64(&ray, direction)));
     cuboid.dimension = cross.dimension = egg.dimension = ray.dimension = 3;
     for (k = 0; k < 3; ++k) cuboid.half[k] = cross.semi_axes[k] = egg.semi_axes[k] = ray.end[k] = 0;
-    CHECK(qdist_gauge_box_f64(&gauge, &cuboid) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_gauge_cross_f64(&gauge, &cross) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_gauge_ellipsoid_f64(&gauge, &egg) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_gauge_segment_f64(&gauge, &ray) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_box_f64(&unit, &cuboid) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_cross_f64(&unit, &cross) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_segment_f64(&unit, &ray) == QDIST_ERROR_ARGUMENT);
     list.count = 1; /* the origin */
-    CHECK(qdist_gauge_vertices_f64(&gauge, &list) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_vertices_f64(&unit, &list) == QDIST_ERROR_ARGUMENT);
     cuboid.half[1] = -1, cross.semi_axes[1] = INFINITY, egg.semi_axes[1] = NAN, ray.end[1] = NAN;
-    CHECK(qdist_gauge_box_f64(&gauge, &cuboid) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_gauge_cross_f64(&gauge, &cross) == QDIST_ERROR_NONFINITE);
-    CHECK(qdist_gauge_ellipsoid_f64(&gauge, &egg) == QDIST_ERROR_NONFINITE);
-    CHECK(qdist_gauge_segment_f64(&gauge, &ray) == QDIST_ERROR_NONFINITE);
-    CHECK(qdist_gauge_box_f64(&gauge, NULL) == QDIST_ERROR_NULL && qdist_gauge_box_f64(NULL, &cuboid) != QDIST_OK);
-    CHECK(memcmp(&gauge, &gauge_before, sizeof gauge) == 0);
+    CHECK(qdist_unit_box_f64(&unit, &cuboid) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_unit_cross_f64(&unit, &cross) == QDIST_ERROR_NONFINITE);
+    CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_NONFINITE);
+    CHECK(qdist_unit_segment_f64(&unit, &ray) == QDIST_ERROR_NONFINITE);
+    CHECK(qdist_unit_box_f64(&unit, NULL) == QDIST_ERROR_NULL && qdist_unit_box_f64(NULL, &cuboid) != QDIST_OK);
+    CHECK(memcmp(&unit, &unit_before, sizeof unit) == 0);
 
     /* Support functions called by hand. */
     CHECK(qdist_box_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
@@ -297,7 +297,7 @@ static void sets_and_gauges(void) {
     CHECK(qdist_points3_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
     CHECK(qdist_sum_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
     CHECK(qdist_linear_support_f64(&map, direction, point) == QDIST_ERROR_NULL);
-    CHECK(isnan(qdist_box_gauge_value_f64(NULL, direction)) && isnan(qdist_box_gauge_value_f64(&cuboid, NULL)));
+    CHECK(isnan(qdist_box_unit_value_f64(NULL, direction)) && isnan(qdist_box_unit_value_f64(&cuboid, NULL)));
 }
 
 static qdist_solver *solver;
@@ -305,7 +305,7 @@ static qdist_body_f64 first, second;
 static qdist_options_f64 options;
 static qdist_depth_f64 depth;
 static qdist_result_f64 result;
-static qdist_gauge_f64 gauge;
+static qdist_unit_f64 unit;
 
 /* One wrong value in an otherwise good query. */
 static void refused(qdist_status status) {
@@ -320,7 +320,7 @@ static void refused(qdist_status status) {
 
 static void refused_set(qdist_status status) {
     refused(status);
-    CHECK(qdist_solve3_f64(solver, &first.set, &gauge, &options, &result) == status);
+    CHECK(qdist_solve3_f64(solver, &first.set, &unit, &options, &result) == status);
 }
 
 static void refused_options(qdist_status status) {
@@ -345,7 +345,7 @@ static void queries(void) {
     CHECK(qdist_body_box_f64(&first, &box) == QDIST_OK && qdist_body_box_f64(&second, &box) == QDIST_OK);
     CHECK(qdist_options_default_f64(&options) == QDIST_OK && qdist_options_default_f64(NULL) == QDIST_ERROR_NULL);
     CHECK(options.struct_size == sizeof options && options.relative == 1e-6 && options.absolute == 0);
-    CHECK(qdist_gauge_ball_f64(&gauge, 1) == QDIST_OK);
+    CHECK(qdist_unit_ball_f64(&unit, 1) == QDIST_OK);
     memset(&depth, 0x55, sizeof depth);
     memset(&result, 0x55, sizeof result);
     depth.struct_size = sizeof depth;
@@ -405,14 +405,14 @@ static void queries(void) {
     refused_set(QDIST_ERROR_STRUCT_SIZE);
     depth.struct_size = sizeof depth, result.struct_size = sizeof result;
 
-    gauge.dimension = 2;
-    CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_DIMENSION);
-    gauge.dimension = 0, gauge.ball_radius = -1;
-    CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_ARGUMENT);
-    gauge.ball_radius = 0;
-    CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_NULL);
-    gauge.value = qdist_box_gauge_value_f64, gauge.extent = NAN;
-    CHECK(qdist_solve3_f64(solver, &first.set, &gauge, NULL, &result) == QDIST_ERROR_NONFINITE);
+    unit.dimension = 2;
+    CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_DIMENSION);
+    unit.dimension = 0, unit.ball_radius = -1;
+    CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_ARGUMENT);
+    unit.ball_radius = 0;
+    CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_NULL);
+    unit.value = qdist_box_unit_value_f64, unit.extent = NAN;
+    CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_NONFINITE);
 }
 
 /* Shapes are trusted once their body is made. One that is spoiled later gives points that are not finite, and nothing worse. */
@@ -440,7 +440,7 @@ static void spoiled(void) {
     }
 }
 
-/* Gauges of the caller. */
+/* Unit sets of the caller. */
 static double nothing(void *user, const double *u) {
     (void)user, (void)u;
     return 0;
@@ -462,25 +462,25 @@ static int32_t silent_vertex(void *user, uint32_t index, double *point) {
     return 0;
 }
 
-/* Gauges that make no sense. */
-static void wrong_gauges(void) {
+/* Unit sets that make no sense. */
+static void wrong_units(void) {
     static uint64_t least[QDIST_WORKSPACE_WORDS_F64(3, 4, 6)]; /* in more, an expansion might not ask for vertices */
     qdist_solver *rays = NULL;
     double value = 0;
     unsigned k;
     CHECK(qdist_solver_init3_f64(least, sizeof least, 4, 6, &rays) == QDIST_OK);
     result.struct_size = sizeof result;
-#define GIVES(expected) CHECK(qdist_solve3_f64(rays, &first.set, &gauge, NULL, &result) == (expected))
-    memset(&gauge, 0, sizeof gauge);
+#define GIVES(expected) CHECK(qdist_solve3_f64(rays, &first.set, &unit, NULL, &result) == (expected))
+    memset(&unit, 0, sizeof unit);
     GIVES(QDIST_ERROR_NULL);
-    gauge.value = nothing; /* the origin alone */
+    unit.value = nothing; /* the origin alone */
     GIVES(QDIST_ERROR_ARGUMENT);
-    gauge.extent = 1; /* it says so, but bounds nothing */
+    unit.extent = 1; /* it says so, but bounds nothing */
     GIVES(QDIST_OK);
     CHECK(result.outcome != QDIST_CONVERGED && result.upper == 1.7976931348623157e308);
-    gauge.value = taxi, gauge.user = &value, gauge.vertex_count = 8;
+    unit.value = taxi, unit.user = &value, unit.vertex_count = 8;
     GIVES(QDIST_ERROR_NULL); /* no function for the vertices */
-    gauge.extent = 2, gauge.vertex = no_vertex;
+    unit.extent = 2, unit.vertex = no_vertex;
     for (k = 0; k < 3; ++k) {
         value = BAD[k];
         GIVES(QDIST_ERROR_CALLBACK);
@@ -488,22 +488,22 @@ static void wrong_gauges(void) {
     }
     value = 1e300; /* too large to be a point */
     GIVES(QDIST_ERROR_CALLBACK);
-    gauge.vertex = silent_vertex;
+    unit.vertex = silent_vertex;
     GIVES(QDIST_ERROR_CALLBACK);
     CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE && result.lower <= 1 && result.upper >= 1);
-    gauge.vertex = no_vertex, value = 0; /* no direction to shoot in */
+    unit.vertex = no_vertex, value = 0; /* no direction to shoot in */
     GIVES(QDIST_OK);
     CHECK(result.lower <= 1 && result.upper >= 1);
-    gauge.vertex_count = 0;
+    unit.vertex_count = 0;
     for (k = 0; k < 3; ++k) {
-        gauge.inner_radius = BAD[k];
+        unit.inner_radius = BAD[k];
         GIVES(QDIST_ERROR_NONFINITE);
     }
-    gauge.inner_radius = -1;
+    unit.inner_radius = -1;
     GIVES(QDIST_ERROR_ARGUMENT);
-    gauge.inner_radius = 3; /* more than the extent */
+    unit.inner_radius = 3; /* more than the extent */
     GIVES(QDIST_ERROR_ARGUMENT);
-    gauge.inner_radius = 1;
+    unit.inner_radius = 1;
     GIVES(QDIST_OK);
 #undef GIVES
 }
@@ -586,9 +586,9 @@ int main(void) {
     memory_and_handles();
     shapes();
     lists();
-    sets_and_gauges();
+    sets_and_units();
     queries();
-    wrong_gauges();
+    wrong_units();
     warm_starts();
     spoiled();
     names();

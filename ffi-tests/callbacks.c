@@ -67,7 +67,7 @@ static int32_t nested(void *user, const double *u, double *point) {
     return cube(user, u, point) + (fails ? 77 : 0);
 }
 
-static double nested_gauge(void *user, const double *u) {
+static double nested_unit(void *user, const double *u) {
     (void)user;
     enter_again();
     return fabs(u[0]) + fabs(u[1]) + fabs(u[2]);
@@ -92,7 +92,7 @@ static void is_free(void) {
 static void used_while_it_runs(void) {
     qdist_set_f64 set;
     qdist_body_f64 a, b;
-    qdist_gauge_f64 gauge;
+    qdist_unit_f64 unit;
     qdist_depth_f64 depth;
     qdist_result_f64 result;
     qdist_options_f64 options;
@@ -120,17 +120,17 @@ static void used_while_it_runs(void) {
     CHECK(qdist_depth3_f64(solver, &a, &b, NULL, &depth) == QDIST_ERROR_STRUCT_SIZE);
     is_free();
 
-    memset(&gauge, 0, sizeof gauge);
-    gauge.value = nested_gauge, gauge.extent = 1, gauge.inner_radius = 0.5;
+    memset(&unit, 0, sizeof unit);
+    unit.value = nested_unit, unit.extent = 1, unit.inner_radius = 0.5;
     inner = QDIST_OK;
-    CHECK(qdist_solve3_f64(solver, &set, &gauge, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
+    CHECK(qdist_solve3_f64(solver, &set, &unit, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
     CHECK(result.lower <= 1 && result.upper >= 1 && result.upper < 1.00001);
     inner = QDIST_OK;
-    CHECK(qdist_solve_in_span3_f64(solver, &set, &gauge, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
+    CHECK(qdist_solve_in_span3_f64(solver, &set, &unit, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
     inner = QDIST_OK;
     CHECK(qdist_tracker_init_f64(&tracker, 3) == QDIST_OK);
     for (int tick = 0; tick < 2; ++tick)
-        CHECK(qdist_solve_warm3_f64(solver, &tracker, &set, &gauge, 0, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
+        CHECK(qdist_solve_warm3_f64(solver, &tracker, &set, &unit, 0, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
 
     CHECK(qdist_options_default_f64(&options) == QDIST_OK);
     options.interrupt = nested_interrupt;
@@ -159,7 +159,7 @@ static double bad_value(void *user, const double *u) {
 static void numbers_that_are_none(void) {
     const double numbers[] = {NAN, INFINITY, -INFINITY};
     qdist_set_f64 set;
-    qdist_gauge_f64 gauge;
+    qdist_unit_f64 unit;
     qdist_result_f64 result;
     qdist_depth_f64 depth;
     qdist_body_f64 a;
@@ -177,17 +177,17 @@ static void numbers_that_are_none(void) {
         CHECK(depth.callback_code == QDIST_CALLBACK_NONFINITE);
         set.support = cube;
         for (int known = 0; known < 2; ++known) {
-            memset(&gauge, 0, sizeof gauge);
-            gauge.value = bad_value, gauge.extent = known;
-            CHECK(qdist_solve3_f64(solver, &set, &gauge, NULL, &result) == QDIST_ERROR_CALLBACK);
+            memset(&unit, 0, sizeof unit);
+            unit.value = bad_value, unit.extent = known;
+            CHECK(qdist_solve3_f64(solver, &set, &unit, NULL, &result) == QDIST_ERROR_CALLBACK);
             CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE && result.lower <= 1 && result.upper >= 1);
         }
     }
     bad = -1;
     for (int known = 0; known < 2; ++known) {
-        memset(&gauge, 0, sizeof gauge);
-        gauge.value = bad_value, gauge.extent = known;
-        CHECK(qdist_solve3_f64(solver, &set, &gauge, NULL, &result) == QDIST_ERROR_CALLBACK);
+        memset(&unit, 0, sizeof unit);
+        unit.value = bad_value, unit.extent = known;
+        CHECK(qdist_solve3_f64(solver, &set, &unit, NULL, &result) == QDIST_ERROR_CALLBACK);
         CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE);
     }
 }

@@ -79,8 +79,8 @@ static void say(const char *what, double lower, wide truth, double upper) {
 int main(void) {
     everywhere(closed_forms_f64);
     everywhere(closed_forms_f32);
-    everywhere(gauges_f64);
-    everywhere(gauges_f32);
+    everywhere(units_f64);
+    everywhere(units_f32);
     everywhere(random_boxes_f64);
     everywhere(random_boxes_f32);
     return finish("environment");
@@ -144,15 +144,15 @@ static void S(closed_forms)(void) {
     }
 }
 
-/* d of a box in the box, ellipsoid and cross-polytope gauges, and of a cross-polytope in six dimensions. */
-static void S(gauges)(void) {
+/* d of a box in the box, ellipsoid and cross-polytope unit sets, and of a cross-polytope in six dimensions. */
+static void S(units)(void) {
     for (int i = 0; i < 40; ++i) {
         S(qdist_box) shape;
         S(qdist_body) body;
-        S(qdist_gauge) gauge;
-        S(qdist_box_gauge) cube = {{0}, 3};
-        S(qdist_ellipsoid_gauge) egg = {{0}, NULL, 3};
-        S(qdist_cross_gauge) cross = {{0}, 3};
+        S(qdist_unit) unit;
+        S(qdist_box_unit) cube = {{0}, 3};
+        S(qdist_ellipsoid_unit) egg = {{0}, NULL, 3};
+        S(qdist_cross_unit) cross = {{0}, 3};
         S(qdist_result) result;
         qdist_solver *solver;
         wide truth = 1e30L;
@@ -166,15 +166,15 @@ static void S(gauges)(void) {
             result.struct_size = sizeof result;
             enter();
             qdist_status status = S(qdist_body_box)(&body, &shape);
-            status |= kind == 0   ? S(qdist_gauge_box)(&gauge, &cube)
-                      : kind == 1 ? S(qdist_gauge_ellipsoid)(&gauge, &egg)
-                                  : S(qdist_gauge_cross)(&gauge, &cross);
+            status |= kind == 0   ? S(qdist_unit_box)(&unit, &cube)
+                      : kind == 1 ? S(qdist_unit_ellipsoid)(&unit, &egg)
+                                  : S(qdist_unit_cross)(&unit, &cross);
             status |= S(qdist_solver_init3)(memory, sizeof memory, 64, 128, &solver);
-            status |= S(qdist_solve3)(solver, &body.set, &gauge, NULL, &result);
+            status |= S(qdist_solve3)(solver, &body.set, &unit, NULL, &result);
             leave();
             CHECK(status == QDIST_OK);
             CHECK(result.lower <= truth && truth <= result.upper);
-            if (!(result.lower <= truth && truth <= result.upper)) say("gauge", result.lower, truth, result.upper);
+            if (!(result.lower <= truth && truth <= result.upper)) say("unit", result.lower, truth, result.upper);
         }
 
         REAL tips[72] = {0};

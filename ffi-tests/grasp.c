@@ -59,15 +59,15 @@ static void Q(table)(qdist_solver *solver) {
     /* d_Q(W), d_Q(W^a). */
     const double expected[5][2] = {
         {0.2425187, 0.2425187}, {0.2235935, 0.2235935}, {0.3153846, 0.3153846}, {0.1119395, 0.1512915}, {1, 1}};
-    const Q(qdist_ellipsoid_gauge) egg = {{2, 1, 1, 1, 1, 1}, NULL, 6};
-    const Q(qdist_cross_gauge) cross = {{1, 1, 1, 1, 1, 1}, 6};
-    const Q(qdist_box_gauge) cube = {{1, 1, 1, 1, 1, 1}, 6};
-    const Q(qdist_segment_gauge) ray = {{1, 0, 0, 0, 0, 0}, 6};
+    const Q(qdist_ellipsoid_unit) egg = {{2, 1, 1, 1, 1, 1}, NULL, 6};
+    const Q(qdist_cross_unit) cross = {{1, 1, 1, 1, 1, 1}, 6};
+    const Q(qdist_box_unit) cube = {{1, 1, 1, 1, 1, 1}, 6};
+    const Q(qdist_segment_unit) ray = {{1, 0, 0, 0, 0, 0}, 6};
     const Q(qdist_contact) contacts[2] = {Q(fingertip)(-0.75, 0.2, 0.2), Q(fingertip)(1.3, 0.2, 0.2)};
     Q(qdist_primitive) passive[2], active[2];
     const Q(qdist_wrenches) w = {passive, 2, QDIST_LINF}, wa = {active, 2, QDIST_LINF};
     Q(qdist_options) options;
-    Q(qdist_gauge) q[5];
+    Q(qdist_unit) q[5];
     Q(qdist_set) sets[2];
     Q(qdist_result) result;
     Q(qdist_active) fingers;
@@ -84,9 +84,9 @@ static void Q(table)(qdist_solver *solver) {
     CHECK(Q(qdist_set_wrenches)(&sets[0], &w) == QDIST_OK && Q(qdist_set_wrenches)(&sets[1], &wa) == QDIST_OK);
     CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
     options.relative = (REAL)WIDTH;
-    CHECK(Q(qdist_gauge_ball)(&q[0], 1) == QDIST_OK && Q(qdist_gauge_ellipsoid)(&q[1], &egg) == QDIST_OK);
-    CHECK(Q(qdist_gauge_cross)(&q[2], &cross) == QDIST_OK && Q(qdist_gauge_box)(&q[3], &cube) == QDIST_OK);
-    CHECK(Q(qdist_gauge_segment)(&q[4], &ray) == QDIST_OK);
+    CHECK(Q(qdist_unit_ball)(&q[0], 1) == QDIST_OK && Q(qdist_unit_ellipsoid)(&q[1], &egg) == QDIST_OK);
+    CHECK(Q(qdist_unit_cross)(&q[2], &cross) == QDIST_OK && Q(qdist_unit_box)(&q[3], &cube) == QDIST_OK);
+    CHECK(Q(qdist_unit_segment)(&q[4], &ray) == QDIST_OK);
     for (i = 0; i < 5; ++i) {
         for (set = 0; set < 2; ++set) {
             const double d = expected[i][set];
@@ -459,12 +459,12 @@ static void Q(finger_errors)(void) {
 
 /* t such that t * end is on the boundary of the pyramids' set. */
 static Q(qdist_result) Q(shoot)(qdist_solver *solver, const Q(qdist_set) *set, double y, double z) {
-    Q(qdist_segment_gauge) segment = {{0, (REAL)y, (REAL)z, 0, 0, 0}, 6};
-    Q(qdist_gauge) q;
+    Q(qdist_segment_unit) segment = {{0, (REAL)y, (REAL)z, 0, 0, 0}, 6};
+    Q(qdist_unit) q;
     Q(qdist_result) result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
-    CHECK(Q(qdist_gauge_segment)(&q, &segment) == QDIST_OK);
+    CHECK(Q(qdist_unit_segment)(&q, &segment) == QDIST_OK);
     CHECK(Q(qdist_solve6)(solver, set, &q, NULL, &result) == QDIST_OK);
     return result;
 }
@@ -482,10 +482,10 @@ static void Q(linearised)(qdist_solver *solver) {
     const Q(qdist_wrenches) w = {primitives, 2, QDIST_L1};
     Q(qdist_pyramid_wrenches) p = {pyramids, 2, QDIST_LINF};
     Q(qdist_layout) layout = {QDIST_LAYOUT_INSCRIBED, 4, 0};
-    Q(qdist_segment_gauge) mean;
+    Q(qdist_segment_unit) mean;
     Q(qdist_preset) preset;
     Q(qdist_result) exact, inside, outside;
-    Q(qdist_gauge) q;
+    Q(qdist_unit) q;
     Q(qdist_set) set;
     uint32_t count, which = 9, i;
 
@@ -554,7 +554,7 @@ static void Q(linearised)(qdist_solver *solver) {
     CHECK(Q(qdist_opposed_mean)(pyramids, 2, &mean) == QDIST_OK && mean.dimension == 6 && fabs(mean.end[0] + 0.5) < 1e-6);
     for (i = 1; i < 6; ++i) mean.end[i] = 0; /* but for rounding they are */
     p.norm = preset.norm;
-    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK && Q(qdist_gauge_segment)(&q, &mean) == QDIST_OK);
+    CHECK(Q(qdist_set_pyramid_wrenches)(&set, &p) == QDIST_OK && Q(qdist_unit_segment)(&q, &mean) == QDIST_OK);
     inside.struct_size = sizeof inside;
     CHECK(Q(qdist_solve6)(solver, &set, &q, NULL, &inside) == QDIST_OK);
     CHECK(NARROW(inside, 2) && fabs(Q(qdist_min_weight)(inside.upper) - 2.0 / 3) < 1e-2 && Q(qdist_min_weight)(1) == (REAL)0.5);
@@ -573,7 +573,7 @@ static void Q(linearised_errors)(void) {
     Q(qdist_layout) layout;
     Q(qdist_wrench_frame) frame = Q(frame);
     Q(qdist_preset) preset, kept;
-    Q(qdist_segment_gauge) mean;
+    Q(qdist_segment_unit) mean;
     Q(qdist_set) set;
     uint32_t which, count = 77;
     memset(pyramids, 0, sizeof pyramids);

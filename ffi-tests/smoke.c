@@ -281,7 +281,7 @@ static void Q(callbacks)(qdist_solver *solver) {
     const Q(qdist_sphere) ball = {0.5};
     int calls = 0, left;
     Q(qdist_set) set;
-    Q(qdist_gauge) gauge;
+    Q(qdist_unit) unit;
     Q(body) a, b;
     Q(depth) depth;
     Q(result) result;
@@ -320,23 +320,23 @@ static void Q(callbacks)(qdist_solver *solver) {
     CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE && result.outcome == QDIST_SUPPORT_FAILED);
     left = 1000000;
     set.support = Q(failing);
-    memset(&gauge, 0, sizeof gauge);
-    gauge.value = Q(negative);
-    gauge.extent = 1;
-    CHECK(Q(qdist_solve3)(solver, &set, &gauge, NULL, &result) == QDIST_ERROR_CALLBACK);
+    memset(&unit, 0, sizeof unit);
+    unit.value = Q(negative);
+    unit.extent = 1;
+    CHECK(Q(qdist_solve3)(solver, &set, &unit, NULL, &result) == QDIST_ERROR_CALLBACK);
     CHECK(result.callback_code == QDIST_CALLBACK_NONFINITE);
 }
 
-static void Q(gauges)(qdist_solver *solver) {
+static void Q(units)(qdist_solver *solver) {
     const Q(qdist_box) cube = {{1.0, 2.0, 4.0}};
     const REAL turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1}; /* x to y */
     const REAL corners[6] = {2, 0, 0, 0, 0, 2};
     const Q(qdist_points) list = {corners, 2, 3};
-    const Q(qdist_segment_gauge) ray = {{1.0, 1.0, 1.0, 0, 0, 0}, 3}, across = {{0, 0, 0.5, 0, 0, 0}, 3};
-    const Q(qdist_box_gauge) box = {{0.5, 0.5, 4.0, 0, 0, 0}, 3};
-    const Q(qdist_cross_gauge) cross = {{0.5, 0.5, 8.0, 0, 0, 0}, 3};
-    const Q(qdist_ellipsoid_gauge) egg = {{1.0, 4.0, 1.0, 0, 0, 0}, turn, 3}, plain = {{0.5, 1.0, 8.0, 0, 0, 0}, NULL, 3};
-    Q(qdist_gauge) gauge;
+    const Q(qdist_segment_unit) ray = {{1.0, 1.0, 1.0, 0, 0, 0}, 3}, across = {{0, 0, 0.5, 0, 0, 0}, 3};
+    const Q(qdist_box_unit) box = {{0.5, 0.5, 4.0, 0, 0, 0}, 3};
+    const Q(qdist_cross_unit) cross = {{0.5, 0.5, 8.0, 0, 0, 0}, 3};
+    const Q(qdist_ellipsoid_unit) egg = {{1.0, 4.0, 1.0, 0, 0, 0}, turn, 3}, plain = {{0.5, 1.0, 8.0, 0, 0, 0}, NULL, 3};
+    Q(qdist_unit) unit;
     Q(body) body;
     Q(result) result;
     Q(qdist_set) set;
@@ -346,26 +346,26 @@ static void Q(gauges)(qdist_solver *solver) {
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
 #define SOLVE(expected)                                                          \
-    CHECK(Q(qdist_solve3)(solver, &set, &gauge, NULL, &result) == QDIST_OK);     \
+    CHECK(Q(qdist_solve3)(solver, &set, &unit, NULL, &result) == QDIST_OK);     \
     CHECK(Q(brackets)(result.lower, result.upper, expected) && result.outcome == QDIST_CONVERGED)
-    CHECK(Q(qdist_gauge_ball)(&gauge, (REAL)0.5) == QDIST_OK);
+    CHECK(Q(qdist_unit_ball)(&unit, (REAL)0.5) == QDIST_OK);
     SOLVE(2.0);
     CHECK(result.point_count >= 1 && result.point_count <= 4 && fabs(fabs(result.direction[0]) - 1) < 1e-4);
-    CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK); /* leaves the box at (1, 1, 1) */
+    CHECK(Q(qdist_unit_segment)(&unit, &ray) == QDIST_OK); /* leaves the box at (1, 1, 1) */
     SOLVE(1.0);
-    CHECK(Q(qdist_gauge_segment)(&gauge, &across) == QDIST_OK);
+    CHECK(Q(qdist_unit_segment)(&unit, &across) == QDIST_OK);
     SOLVE(8.0);
-    CHECK(Q(qdist_gauge_box)(&gauge, &box) == QDIST_OK); /* 1/0.5, 2/0.5, 4/4 */
+    CHECK(Q(qdist_unit_box)(&unit, &box) == QDIST_OK); /* 1/0.5, 2/0.5, 4/4 */
     SOLVE(1.0);
-    CHECK(Q(qdist_gauge_cross)(&gauge, &cross) == QDIST_OK); /* 4/8 */
+    CHECK(Q(qdist_unit_cross)(&unit, &cross) == QDIST_OK); /* 4/8 */
     SOLVE(0.5);
-    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &egg) == QDIST_OK); /* semi axis 4 along -x */
+    CHECK(Q(qdist_unit_ellipsoid)(&unit, &egg) == QDIST_OK); /* semi axis 4 along -x */
     SOLVE(0.25);
-    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &plain) == QDIST_OK); /* 1/0.5, 2/1, 4/8 */
+    CHECK(Q(qdist_unit_ellipsoid)(&unit, &plain) == QDIST_OK); /* 1/0.5, 2/1, 4/8 */
     SOLVE(0.5);
-    gauge.extent = 0; /* unknown: the library asks */
+    unit.extent = 0; /* unknown: the library asks */
     SOLVE(0.5);
-    CHECK(Q(qdist_gauge_vertices)(&gauge, &list) == QDIST_OK); /* 1/2 along x, 4/2 along z */
+    CHECK(Q(qdist_unit_vertices)(&unit, &list) == QDIST_OK); /* 1/2 along x, 4/2 along z */
     SOLVE(0.5);
 #undef SOLVE
 }
@@ -374,7 +374,7 @@ static void Q(gauges)(qdist_solver *solver) {
 static void Q(dimensions)(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 256, 40000)];
     typedef qdist_status (*init)(void *, uint32_t, uint32_t, uint32_t, qdist_solver **);
-    typedef qdist_status (*solve)(qdist_solver *, const Q(qdist_set) *, const Q(qdist_gauge) *, const Q(qdist_options) *,
+    typedef qdist_status (*solve)(qdist_solver *, const Q(qdist_set) *, const Q(qdist_unit) *, const Q(qdist_options) *,
                                   Q(result) *);
     const init inits[] = {Q(qdist_solver_init2), Q(qdist_solver_init3), Q(qdist_solver_init4), Q(qdist_solver_init5),
                           Q(qdist_solver_init6)};
@@ -387,8 +387,8 @@ static void Q(dimensions)(void) {
         Q(qdist_set) cube, shifted, difference;
         Q(qdist_pair) pair;
         Q(qdist_linear) map;
-        Q(qdist_segment_gauge) ray;
-        Q(qdist_gauge) gauge;
+        Q(qdist_segment_unit) ray;
+        Q(qdist_unit) unit;
         Q(result) result;
         REAL matrix[36];
         qdist_solver *solver = NULL;
@@ -405,8 +405,8 @@ static void Q(dimensions)(void) {
 
         memset(&ray, 0, sizeof ray);
         ray.end[0] = (REAL)0.5, ray.dimension = n;
-        CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK);
-        CHECK(solves[n - 2](solver, &cube, &gauge, NULL, &result) == QDIST_OK);
+        CHECK(Q(qdist_unit_segment)(&unit, &ray) == QDIST_OK);
+        CHECK(solves[n - 2](solver, &cube, &unit, NULL, &result) == QDIST_OK);
         CHECK(Q(brackets)(result.lower, result.upper, 2.5));
 
         /* cube - (cube mapped by 1/2, and moved by -1 along the last axis): half sizes 1.5 around (0.125, ..., 1). */
@@ -426,7 +426,7 @@ static void Q(dimensions)(void) {
     }
 }
 
-/* An ellipsoid with the semi axes sqrt(1), sqrt(2), .. in as many dimensions as `size`, moved by `at`: sets, gauges and clocks of the
+/* An ellipsoid with the semi axes sqrt(1), sqrt(2), .. in as many dimensions as `size`, moved by `at`: sets, unit sets and clocks of the
  * caller. */
 typedef struct {
     uint32_t size;
@@ -453,7 +453,7 @@ static int32_t Q(egg_mirrored)(void *user, uint32_t signs) {
     return 1;
 }
 
-/* The unit cube as a gauge of the caller. */
+/* The unit cube as a unit set of the caller. */
 static REAL Q(cube_value)(void *user, const REAL *direction) {
     const Q(world) *w = user;
     double sum = 0;
@@ -486,15 +486,15 @@ static int32_t Q(clock)(void *user) {
 /* A 6-D query in 64 KB: what it is decides the plan. */
 static void Q(plans)(void) {
     static uint64_t memory[8192];
-    const Q(qdist_box_gauge) cuboid = {{1, 1, 1, 1, 1, 0.5}, 6};
-    const Q(qdist_cross_gauge) cross = {{2, 1, 1, 1, 1, 1}, 6};
-    const Q(qdist_segment_gauge) ray = {{0, 0, 0, 2, 0, 0}, 6};
+    const Q(qdist_box_unit) cuboid = {{1, 1, 1, 1, 1, 0.5}, 6};
+    const Q(qdist_cross_unit) cross = {{2, 1, 1, 1, 1, 1}, 6};
+    const Q(qdist_segment_unit) ray = {{0, 0, 0, 2, 0, 0}, 6};
     const REAL sparse[18] = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2, 0, 0};
     const Q(qdist_points) list = {sparse, 3, 6}; /* with the origin among them */
-    Q(qdist_ellipsoid_gauge) round = {{1, 1, 1, 1, 1, 1}, NULL, 6};
+    Q(qdist_ellipsoid_unit) round = {{1, 1, 1, 1, 1, 1}, NULL, 6};
     Q(world) w;
     Q(qdist_set) set;
-    Q(qdist_gauge) gauge, own;
+    Q(qdist_unit) unit, own;
     Q(qdist_options) options;
     Q(qdist_tracker) tracker;
     Q(result) result, before;
@@ -518,16 +518,16 @@ static void Q(plans)(void) {
                result.upper - result.lower <= 10.001 * WIDTH * (d))
     options.relative = (REAL)(10 * WIDTH);
 
-    /* Polytopal gauges: a corner of t * box is on the ellipsoid where the sum of its squares over the axes' is 1. */
-    CHECK(Q(qdist_gauge_box)(&gauge, &cuboid) == QDIST_OK && gauge.vertex_count == 64);
-    CHECK(SOLVE(&gauge) == QDIST_OK && IS(whole) && result.plan == QDIST_PLAN_RAYS);
+    /* Polytopal unit sets: a corner of t * box is on the ellipsoid where the sum of its squares over the axes' is 1. */
+    CHECK(Q(qdist_unit_box)(&unit, &cuboid) == QDIST_OK && unit.vertex_count == 64);
+    CHECK(SOLVE(&unit) == QDIST_OK && IS(whole) && result.plan == QDIST_PLAN_RAYS);
     CHECK(result.has_rival == 1);
-    CHECK(Q(qdist_gauge_cross)(&gauge, &cross) == QDIST_OK && gauge.vertex_count == 12);
-    CHECK(SOLVE(&gauge) == QDIST_OK && IS(0.5) && result.plan != QDIST_PLAN_CONES);
-    CHECK(Q(qdist_gauge_segment)(&gauge, &ray) == QDIST_OK && gauge.vertex_count == 1);
-    CHECK(SOLVE(&gauge) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
-    CHECK(Q(qdist_gauge_vertices)(&gauge, &list) == QDIST_OK && gauge.vertex_count == 3);
-    CHECK(SOLVE(&gauge) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(Q(qdist_unit_cross)(&unit, &cross) == QDIST_OK && unit.vertex_count == 12);
+    CHECK(SOLVE(&unit) == QDIST_OK && IS(0.5) && result.plan != QDIST_PLAN_CONES);
+    CHECK(Q(qdist_unit_segment)(&unit, &ray) == QDIST_OK && unit.vertex_count == 1);
+    CHECK(SOLVE(&unit) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(Q(qdist_unit_vertices)(&unit, &list) == QDIST_OK && unit.vertex_count == 3);
+    CHECK(SOLVE(&unit) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
 
     /* The same cube by callbacks; what fails is said. */
     memset(&own, 0, sizeof own);
@@ -542,7 +542,7 @@ static void Q(plans)(void) {
         CHECK(result.callback_code == (w.bad == 1 ? 99 : QDIST_CALLBACK_NONFINITE));
         CHECK(result.lower <= 1 / sqrt(2.45) && 1 / sqrt(2.45) <= result.upper);
     }
-    /* Without vertices it is a gauge like any other; a `point` that fails or lies only slows the search down. */
+    /* Without vertices it is a unit set like any other; a `point` that fails or lies only slows the search down. */
     own.vertex_count = 0;
     options.relative = (REAL)0.05;
     for (w.bad = 3; w.bad <= 5; ++w.bad) {
@@ -574,18 +574,18 @@ static void Q(plans)(void) {
 
     /* The gradient: the sphere of radius 1 in a half space of directions, moved by `at`, loses what it is moved along u. */
     w.at[0] = 0.25;
-    CHECK(SOLVE(NULL) == QDIST_OK && result.lower <= 0.75 && 0.75 <= result.upper && result.gauge == 1);
+    CHECK(SOLVE(NULL) == QDIST_OK && result.lower <= 0.75 && 0.75 <= result.upper && result.unit == 1);
     CHECK(fabs(result.direction[0] + 1) < 0.05 && fabs(result.support[0] + 0.75) < 0.05 && result.has_rival == 0);
     before = result;
     w.at[0] = 0.26;
     options.relative = (REAL)0.01;
-    CHECK(SOLVE(NULL) == QDIST_OK && fabs(0.75 + before.direction[0] / before.gauge * 0.01 - 0.74) < 0.001);
+    CHECK(SOLVE(NULL) == QDIST_OK && fabs(0.75 + before.direction[0] / before.unit * 0.01 - 0.74) < 0.001);
     w.at[0] = 0;
 
     /* A loop: the set moves by a little, and the bracket moves along. */
     CHECK(Q(qdist_tracker_init)(&tracker, 6) == QDIST_OK && tracker.dimension == 6);
     CHECK(Q(qdist_tracker_lower_after)(&tracker, NULL, 0, &lower) == QDIST_OK && lower < -1e30);
-    CHECK(Q(qdist_gauge_ellipsoid)(&gauge, &round) == QDIST_OK && gauge.inner_radius == 1);
+    CHECK(Q(qdist_unit_ellipsoid)(&unit, &round) == QDIST_OK && unit.inner_radius == 1);
     set.mirrored = Q(egg_mirrored);
     options.relative = (REAL)0.02;
     for (tick = 0, least = 1, step = -1; tick < 40; ++tick) {
@@ -594,13 +594,13 @@ static void Q(plans)(void) {
             step = 1e-4;
             w.at[0] += 1e-4;
             least -= 1e-4;
-            CHECK(Q(qdist_tracker_lower_after)(&tracker, &gauge, (REAL)step * (REAL)1.0001, &lower) == QDIST_OK);
+            CHECK(Q(qdist_tracker_lower_after)(&tracker, &unit, (REAL)step * (REAL)1.0001, &lower) == QDIST_OK);
             CHECK(lower <= least && lower > least * 0.96);
         }
         options.max_iterations = tick > 0 ? 20 : 0;
         options.relative = (REAL)(tick > 0 ? 0.03 : 0.02);
         result.support_calls = 0;
-        CHECK(Q(qdist_solve_warm6)(solver, &tracker, &set, &gauge, (REAL)step * (REAL)1.0001, &options, &result) == QDIST_OK);
+        CHECK(Q(qdist_solve_warm6)(solver, &tracker, &set, &unit, (REAL)step * (REAL)1.0001, &options, &result) == QDIST_OK);
         CHECK(result.lower <= least * (1 + 1e-6) && least * (1 - 1e-6) <= result.upper && tracker.lower == result.lower);
         calls = result.support_calls;
         if (tick > 0 && tick < 20) CHECK(result.plan == QDIST_PLAN_WARM && calls < 30 && result.outcome == QDIST_CONVERGED);
@@ -703,7 +703,7 @@ static void Q(smoke)(void) {
     Q(limits)(solver);
     Q(skewed)(solver);
     Q(callbacks)(solver);
-    Q(gauges)(solver);
+    Q(units)(solver);
     Q(hulls)(solver);
     Q(dimensions)();
     Q(plans)();

@@ -69,22 +69,22 @@ static int32_t rounded(void *user, const double *u, double *p) {
 static void six(int plan) {
     qdist_solver *solver;
     qdist_set_f64 set;
-    qdist_gauge_f64 gauge;
-    qdist_box_gauge_f64 cube = {{1, 1, 1, 1, 1, 1}, 6};
+    qdist_unit_f64 unit;
+    qdist_box_unit_f64 cube = {{1, 1, 1, 1, 1, 1}, 6};
     qdist_options_f64 options;
     qdist_tracker_f64 tracker;
     qdist_result_f64 result;
     memset(&set, 0, sizeof set);
     set.support = rounded;
     if (qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver)) failures++;
-    if (qdist_gauge_box_f64(&gauge, &cube) || qdist_options_default_f64(&options)) failures++;
+    if (qdist_unit_box_f64(&unit, &cube) || qdist_options_default_f64(&options)) failures++;
     if (qdist_tracker_init_f64(&tracker, 6)) failures++;
     options.relative = 1e-2;
     result.struct_size = sizeof result;
     if (plan == 2 && qdist_solve_in_span6_f64(solver, &set, NULL, &options, &result)) failures++;
     for (int tick = 0; plan == 3 && tick < 2; tick++)
         if (qdist_solve_warm6_f64(solver, &tracker, &set, NULL, 0, &options, &result)) failures++;
-    if (plan < 2 && qdist_solve6_f64(solver, &set, plan ? &gauge : NULL, &options, &result)) failures++;
+    if (plan < 2 && qdist_solve6_f64(solver, &set, plan ? &unit : NULL, &options, &result)) failures++;
     const int expected[] = {QDIST_PLAN_CONES, QDIST_PLAN_RAYS, QDIST_PLAN_CONES, QDIST_PLAN_WARM};
     if (result.plan != expected[plan]) failures++;
 }

@@ -135,11 +135,11 @@ static struct {
     Q(qdist_set) set, other, sets[2];
     Q(qdist_pair) pair;
     Q(qdist_linear) linear;
-    Q(qdist_gauge) gauge;
-    Q(qdist_box_gauge) cube;
-    Q(qdist_ellipsoid_gauge) egg;
-    Q(qdist_cross_gauge) cross;
-    Q(qdist_segment_gauge) segment;
+    Q(qdist_unit) unit;
+    Q(qdist_box_unit) cube;
+    Q(qdist_ellipsoid_unit) egg;
+    Q(qdist_cross_unit) cross;
+    Q(qdist_segment_unit) segment;
     Q(qdist_options) options;
     Q(qdist_tracker) tracker;
     Q(qdist_depth) depth;
@@ -242,11 +242,11 @@ static void Q(choose)(void) {
     SET_SLOT((body).set), slot((body).rotation, 9, ALL), slot((body).translation, 3, ALL), slot((body).center, 3, SOME), \
         slot(&(body).rolling_radius, 1, ALL), slot(&(body).spread, 1, ALL)
 #define OPTIONS_SLOT() slot(&W.options.absolute, 1, ALL), slot(&W.options.relative, 1, ALL), slot(&W.options.threshold, 1, SOME), slot(W.options.guess, 6, SOME)
-#define GAUGE_SLOT() slot(&W.gauge.extent, 1, ALL), slot(&W.gauge.ball_radius, 1, ALL), slot(&W.gauge.inner_radius, 1, ALL)
+#define UNIT_SLOT() slot(&W.unit.extent, 1, ALL), slot(&W.unit.ball_radius, 1, ALL), slot(&W.unit.inner_radius, 1, ALL)
 #define RESULT_OUTPUT(result)                                                                                                    \
-    numbers(&(result).lower, 2), numbers((result).direction, 6), numbers((result).support, 6), numbers(&(result).gauge, 1),      \
+    numbers(&(result).lower, 2), numbers((result).direction, 6), numbers((result).support, 6), numbers(&(result).unit, 1),      \
         numbers((result).rival, 6), numbers((result).weights, 7), numbers((result).points, 42)
-#define GAUGE_OUTPUT() output(&W.gauge, sizeof W.gauge, 0), numbers(&W.gauge.extent, 3)
+#define UNIT_OUTPUT() output(&W.unit, sizeof W.unit, 0), numbers(&W.unit.extent, 3)
 #define CONTACT_SLOT(contact)                                                                                              \
     slot((contact).position, 3, ALL), slot((contact).normal, 3, ALL), slot((contact).tangents, 6, ALL), slot(&(contact).mu, 1, ALL), \
         slot(&(contact).mus, 1, ALL), slot(&(contact).force_cap, 1, ALL)
@@ -274,16 +274,16 @@ CASE(set_difference, (W.set = W.other = W.a.set, W.pair.a = &W.set, W.pair.b = &
      Q(qdist_set_difference)(&W.sets[0], &W.pair))
 CASE(set_linear, (W.set = W.b.set, W.linear.set = &W.set, W.linear.matrix = W.matrix, W.linear.rows = 6, W.linear.columns = 3, SET_SLOT(W.set), slot(W.matrix, 18, ALL), slot(W.linear.translation, 6, ALL), SET_OUTPUT(W.sets[0])),
      Q(qdist_set_linear)(&W.sets[0], &W.linear))
-CASE(gauge_ball, (slot(&W.radius, 1, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_ball)(&W.gauge, W.radius))
-CASE(gauge_box, (slot(W.cube.half, 6, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_box)(&W.gauge, &W.cube))
-CASE(gauge_ellipsoid, (W.egg.rotation = W.matrix, slot(W.egg.semi_axes, 6, ALL), slot(W.matrix, 36, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_ellipsoid)(&W.gauge, &W.egg))
-CASE(gauge_cross, (slot(W.cross.semi_axes, 6, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_cross)(&W.gauge, &W.cross))
-CASE(gauge_segment, (slot(W.segment.end, 6, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_segment)(&W.gauge, &W.segment))
-CASE(gauge_vertices, (slot(W.tips, 72, ALL), GAUGE_OUTPUT()), Q(qdist_gauge_vertices)(&W.gauge, &W.points))
+CASE(unit_ball, (slot(&W.radius, 1, ALL), UNIT_OUTPUT()), Q(qdist_unit_ball)(&W.unit, W.radius))
+CASE(unit_box, (slot(W.cube.half, 6, ALL), UNIT_OUTPUT()), Q(qdist_unit_box)(&W.unit, &W.cube))
+CASE(unit_ellipsoid, (W.egg.rotation = W.matrix, slot(W.egg.semi_axes, 6, ALL), slot(W.matrix, 36, ALL), UNIT_OUTPUT()), Q(qdist_unit_ellipsoid)(&W.unit, &W.egg))
+CASE(unit_cross, (slot(W.cross.semi_axes, 6, ALL), UNIT_OUTPUT()), Q(qdist_unit_cross)(&W.unit, &W.cross))
+CASE(unit_segment, (slot(W.segment.end, 6, ALL), UNIT_OUTPUT()), Q(qdist_unit_segment)(&W.unit, &W.segment))
+CASE(unit_vertices, (slot(W.tips, 72, ALL), UNIT_OUTPUT()), Q(qdist_unit_vertices)(&W.unit, &W.points))
 CASE(options_default, (output(&W.options, sizeof W.options, 0)), Q(qdist_options_default)(&W.options))
 #define TIPS(n)                                                                                     \
     (W.points.dimension = n, W.points.count = 2 * n, memset(W.tips, 0, sizeof W.tips), Q(tips)(n),  \
-     Q(qdist_set_points)(&W.set, &W.points), W.cube.dimension = n, Q(qdist_gauge_box)(&W.gauge, &W.cube))
+     Q(qdist_set_points)(&W.set, &W.points), W.cube.dimension = n, Q(qdist_unit_box)(&W.unit, &W.cube))
 static void Q(tips)(unsigned n) {
     for (unsigned k = 0; k < n; ++k) W.tips[2 * n * k + k] = (REAL)(1 + 0.1 * k), W.tips[2 * n * k + n + k] = (REAL)(-1.1);
 }
@@ -295,23 +295,23 @@ CASE(depth3_far, (W.a.spread = 4, BODY_SLOT(W.a), slot(W.a.center, 3, ALL), outp
 
 /* Queries in every dimension, of a cross-polytope in a box. */
 #define QUERIES(n)                                                                                                                    \
-    CASE(solve##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), GAUGE_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)), \
-         Q(qdist_solve##n)(Q(solver)[n], &W.set, &W.gauge, &W.options, &W.result))                                                   \
+    CASE(solve##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), UNIT_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)), \
+         Q(qdist_solve##n)(Q(solver)[n], &W.set, &W.unit, &W.options, &W.result))                                                   \
     CASE(ball##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)),        \
          Q(qdist_solve##n)(Q(solver)[n], &W.set, NULL, &W.options, &W.result))                                                       \
-    CASE(span##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), GAUGE_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)), \
-         Q(qdist_solve_in_span##n)(Q(solver)[n], &W.set, &W.gauge, &W.options, &W.result))                                           \
-    CASE(warm##n, (TIPS(n), Q(qdist_tracker_init)(&W.tracker, n), W.tracker.directions[0][0] = 1, SET_SLOT(W.set), OPTIONS_SLOT(), GAUGE_SLOT(), slot(&W.moved, 1, ALL), \
+    CASE(span##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), UNIT_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)), \
+         Q(qdist_solve_in_span##n)(Q(solver)[n], &W.set, &W.unit, &W.options, &W.result))                                           \
+    CASE(warm##n, (TIPS(n), Q(qdist_tracker_init)(&W.tracker, n), W.tracker.directions[0][0] = 1, SET_SLOT(W.set), OPTIONS_SLOT(), UNIT_SLOT(), slot(&W.moved, 1, ALL), \
                    slot(&W.tracker.lower, 1, ALL), slot(W.tracker.directions[0], n, ALL), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)),               \
-         Q(qdist_solve_warm##n)(Q(solver)[n], &W.tracker, &W.set, &W.gauge, W.moved, &W.options, &W.result))
+         Q(qdist_solve_warm##n)(Q(solver)[n], &W.tracker, &W.set, &W.unit, W.moved, &W.options, &W.result))
 QUERIES(2)
 QUERIES(3)
 QUERIES(4)
 QUERIES(5)
 QUERIES(6)
 CASE(tracker, (output(&W.tracker, sizeof W.tracker, 0), numbers(&W.tracker.lower, 1), numbers(W.tracker.directions[0], 24)), Q(qdist_tracker_init)(&W.tracker, 3))
-CASE(lower_after, (TIPS(3), Q(qdist_tracker_init)(&W.tracker, 3), W.tracker.lower = 1, slot(&W.tracker.lower, 1, ALL), slot(W.tracker.directions[0], 3, ALL), slot(&W.moved, 1, ALL), GAUGE_SLOT(), output(&W.lower, sizeof W.lower, 0), numbers(&W.lower, 1)),
-     Q(qdist_tracker_lower_after)(&W.tracker, &W.gauge, W.moved, &W.lower))
+CASE(lower_after, (TIPS(3), Q(qdist_tracker_init)(&W.tracker, 3), W.tracker.lower = 1, slot(&W.tracker.lower, 1, ALL), slot(W.tracker.directions[0], 3, ALL), slot(&W.moved, 1, ALL), UNIT_SLOT(), output(&W.lower, sizeof W.lower, 0), numbers(&W.lower, 1)),
+     Q(qdist_tracker_lower_after)(&W.tracker, &W.unit, W.moved, &W.lower))
 
 CASE(passive, (CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), output(W.primitives, sizeof W.primitives, 0), numbers(W.primitives[1].center, 25)),
      Q(qdist_passive_primitives)(W.contacts, 3, &W.frame, W.primitives, &W.which))
@@ -335,7 +335,7 @@ CASE(force_memory, (output(&W.memory, sizeof W.memory, 0), numbers(W.memory.dire
      (memset(&W.memory, 0, sizeof W.memory), W.found.struct_size = sizeof W.found, Q(qdist_contact_forces)(&W.wrenches, &W.memory, W.six, NULL, W.shares, &W.found)))
 CASE(force, (CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), slot(W.six, 6, ALL), output(W.force, sizeof W.force, 0), numbers(W.force, 4)),
      Q(qdist_contact_force)(&W.contacts[1], &W.frame, W.six, W.force))
-CASE(gradients, (Q(qdist_set_wrenches)(&W.set, &W.wrenches), W.answer.struct_size = sizeof W.answer, Q(qdist_solve6)(Q(solver)[6], &W.set, NULL, &W.options, &W.answer), CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), PRIMITIVE_SLOT(W.primitives[1]), slot(&W.answer.lower, 1, ALL), slot(&W.answer.upper, 1, ALL), slot(W.answer.direction, 6, ALL), slot(W.answer.support, 6, ALL), slot(&W.answer.gauge, 1, ALL),
+CASE(gradients, (Q(qdist_set_wrenches)(&W.set, &W.wrenches), W.answer.struct_size = sizeof W.answer, Q(qdist_solve6)(Q(solver)[6], &W.set, NULL, &W.options, &W.answer), CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), PRIMITIVE_SLOT(W.primitives[1]), slot(&W.answer.lower, 1, ALL), slot(&W.answer.upper, 1, ALL), slot(W.answer.direction, 6, ALL), slot(W.answer.support, 6, ALL), slot(&W.answer.unit, 1, ALL),
                  output(&W.refined, sizeof W.refined, 1), output(W.gradients, sizeof W.gradients, 0), numbers(&W.refined.upper, 1), numbers(W.refined.direction, 6), numbers(W.gradients[1].position, 44)),
      Q(qdist_grasp_gradients)(&W.wrenches, W.contacts, 3, &W.frame, 0, 0, NULL, &W.answer, &W.refined, W.gradients, &W.which))
 CASE(finger_init, (CONTACT_SLOT(W.contacts[0]), slot(W.contacts[0].jacobian, 32, ALL), FRAME_SLOT(), slot(W.limits, 8, SOME), slot(&W.tolerance, 1, ALL)),
@@ -363,7 +363,7 @@ static const struct {
 #define ENTRIES(n) ENTRY(solve##n), ENTRY(ball##n), ENTRY(span##n), ENTRY(warm##n)
     ENTRY(body_box), ENTRY(body_sphere), ENTRY(body_ellipsoid), ENTRY(body_cylinder), ENTRY(body_capsule), ENTRY(body_cone),
     ENTRY(body_set), ENTRY(set_points), ENTRY(body_points), ENTRY(set_sum), ENTRY(set_difference), ENTRY(set_linear),
-    ENTRY(gauge_ball), ENTRY(gauge_box), ENTRY(gauge_ellipsoid), ENTRY(gauge_cross), ENTRY(gauge_segment), ENTRY(gauge_vertices),
+    ENTRY(unit_ball), ENTRY(unit_box), ENTRY(unit_ellipsoid), ENTRY(unit_cross), ENTRY(unit_segment), ENTRY(unit_vertices),
     ENTRY(options_default), ENTRY(hull), ENTRY(depth3), ENTRY(depth3_far), ENTRIES(2), ENTRIES(3), ENTRIES(4), ENTRIES(5), ENTRIES(6),
     ENTRY(tracker), ENTRY(lower_after), ENTRY(passive), ENTRY(actives), ENTRY(active), ENTRY(subspace), ENTRY(set_wrenches),
     ENTRY(closure), ENTRY(best), ENTRY(wrench), ENTRY(forces), ENTRY(force_memory), ENTRY(force), ENTRY(gradients), ENTRY(finger_init),
@@ -423,9 +423,9 @@ static void Q(sweep)(void) {
 #undef SET_SLOT
 #undef BODY_SLOT
 #undef OPTIONS_SLOT
-#undef GAUGE_SLOT
+#undef UNIT_SLOT
 #undef RESULT_OUTPUT
-#undef GAUGE_OUTPUT
+#undef UNIT_OUTPUT
 #undef CONTACT_SLOT
 #undef FRAME_SLOT
 #undef PRIMITIVE_SLOT

@@ -1,7 +1,7 @@
 /* qdist: certified generalized penetration distance of convex sets, in fixed memory.
  *
  * The depth of two overlapping bodies, or their distance; the depth of the origin in a convex set of dimension 2 to 6 with
- * respect to a gauge set. Every answer is a bracket: lower <= d <= upper, rounding included.
+ * respect to a unit set. Every answer is a bracket: lower <= d <= upper, rounding included.
  *
  *     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 64, 128)];
  *     qdist_solver *solver;
@@ -26,7 +26,7 @@
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
- *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
+ *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
@@ -103,7 +103,7 @@ typedef struct qdist_solver qdist_solver;
  * Three questions, three types. A status says whether the call worked. An outcome says what the run concluded, and whatever
  * it concluded, the bracket holds. A plan says how. */
 
-// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
+// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a unit set returned NaN or a negative
 // number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 #define QDIST_CALLBACK_NONFINITE (-2147483647 - 1)
 
@@ -144,7 +144,7 @@ typedef int32_t (*qdist_interrupt)(void *user);
 // Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
 #define QDIST_ERROR_ALIGNMENT 6
 
-// The dimension is not one of 2 to 6, or solver, set, gauge and function are not of the same dimension.
+// The dimension is not one of 2 to 6, or solver, set, unit set and function are not of the same dimension.
 #define QDIST_ERROR_DIMENSION 7
 
 // The solver was made for the other scalar type.
@@ -321,11 +321,11 @@ uint32_t qdist_version(void);
 // All rotations about the origin of the body's frame leave the set unchanged.
 #define QDIST_SYMMETRY_FULL 2
 
-// Of a set or gauge: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
+// Of a set or unit set: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
 // when it certainly does not, else 0. A search by cones leaves out what is an image of something else under a change of sign
 // that both A and Q allow.
 //
-// user: the pointer from the set or gauge.
+// user: the pointer from the set or unit set.
 typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
 
 // What answers for a body without end. Not for functions of your own.
@@ -762,33 +762,33 @@ int32_t qdist_set_join_support_f64(void *user, const double *direction, double *
 // The same, where a part has shortcuts.
 int32_t qdist_set_join_exhaustive_f64(void *user, const double *direction, double *point);
 
-/* ========================================================== GAUGE SETS ==========================================================
+/* ========================================================== UNIT SETS ==========================================================
  *
  * What one unit of depth means in each direction: a convex set Q that contains the origin, known by its support function
  * h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
- * ordinary Euclidean depth. The structs and lists must outlive the gauge that is made of them. */
+ * ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them. */
 
 // h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 // the query with QDIST_CALLBACK_NONFINITE.
-typedef double (*qdist_gauge_value_f64)(void *user, const double *direction);
+typedef double (*qdist_unit_value_f64)(void *user, const double *direction);
 
 // Writes a point q of Q with direction . q = h_Q(direction) to `point`: where the plane touches Q. Returns 0, or anything else where
 // that is not known.
-typedef int32_t (*qdist_gauge_point_f64)(void *user, const double *direction, double *point);
+typedef int32_t (*qdist_unit_point_f64)(void *user, const double *direction, double *point);
 
 // Writes point number `index` < vertex_count to `point`. Returns 0, or a code that ends the query, as that of a support function
 // does. Coordinates that are not finite end it too.
-typedef int32_t (*qdist_gauge_vertex_f64)(void *user, uint32_t index, double *point);
+typedef int32_t (*qdist_unit_vertex_f64)(void *user, uint32_t index, double *point);
 
-// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+// A unit set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
 // true, or the bracket is not.
 typedef struct {
-    qdist_gauge_value_f64 value;
+    qdist_unit_value_f64 value;
     // Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
-    qdist_gauge_point_f64 point;
+    qdist_unit_point_f64 point;
     // With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
     // a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
-    qdist_gauge_vertex_f64 vertex;
+    qdist_unit_vertex_f64 vertex;
     // Which mirror images of Q are Q itself.
     qdist_mirrored mirrored;
     // First argument of all functions.
@@ -803,7 +803,7 @@ typedef struct {
     uint32_t vertex_count;
     // The dimension that the functions work in; 0: not checked.
     uint32_t dimension;
-} qdist_gauge_f64;
+} qdist_unit_f64;
 
 // The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 typedef struct {
@@ -813,7 +813,7 @@ typedef struct {
     const double *rotation;
     // 2 to 6.
     uint32_t dimension;
-} qdist_ellipsoid_gauge_f64;
+} qdist_ellipsoid_unit_f64;
 
 // The box |x_i| <= half[i]; sizes >= 0, not all zero.
 typedef struct {
@@ -821,7 +821,7 @@ typedef struct {
     double half[6];
     // 2 to 6.
     uint32_t dimension;
-} qdist_box_gauge_f64;
+} qdist_box_unit_f64;
 
 // The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 typedef struct {
@@ -829,7 +829,7 @@ typedef struct {
     double semi_axes[6];
     // 2 to 6.
     uint32_t dimension;
-} qdist_cross_gauge_f64;
+} qdist_cross_unit_f64;
 
 // The segment from the origin to `end`, which is not zero: the depth is how many times `end` fits into A from the origin, as
 // for a ray.
@@ -838,40 +838,40 @@ typedef struct {
     double end[6];
     // 2 to 6.
     uint32_t dimension;
-} qdist_segment_gauge_f64;
+} qdist_segment_unit_f64;
 
 // Makes the ball of this radius > 0 around the origin, of any dimension.
-qdist_status qdist_gauge_ball_f64(qdist_gauge_f64 *gauge, double radius);
+qdist_status qdist_unit_ball_f64(qdist_unit_f64 *unit, double radius);
 
 // Makes an ellipsoid.
-qdist_status qdist_gauge_ellipsoid_f64(qdist_gauge_f64 *gauge, const qdist_ellipsoid_gauge_f64 *shape);
+qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit, const qdist_ellipsoid_unit_f64 *shape);
 
 // Makes a box.
-qdist_status qdist_gauge_box_f64(qdist_gauge_f64 *gauge, const qdist_box_gauge_f64 *shape);
+qdist_status qdist_unit_box_f64(qdist_unit_f64 *unit, const qdist_box_unit_f64 *shape);
 
 // Makes a cross-polytope.
-qdist_status qdist_gauge_cross_f64(qdist_gauge_f64 *gauge, const qdist_cross_gauge_f64 *shape);
+qdist_status qdist_unit_cross_f64(qdist_unit_f64 *unit, const qdist_cross_unit_f64 *shape);
 
 // Makes a segment.
-qdist_status qdist_gauge_segment_f64(qdist_gauge_f64 *gauge, const qdist_segment_gauge_f64 *shape);
+qdist_status qdist_unit_segment_f64(qdist_unit_f64 *unit, const qdist_segment_unit_f64 *shape);
 
 // Makes the hull of the origin and a list of points, not all zero. Reads all of them.
-qdist_status qdist_gauge_vertices_f64(qdist_gauge_f64 *gauge, const qdist_points_f64 *shape);
+qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist_points_f64 *shape);
 
-// Support function of an ellipsoid gauge.
-double qdist_ellipsoid_gauge_value_f64(void *user, const double *direction);
+// Support function of an ellipsoid unit set.
+double qdist_ellipsoid_unit_value_f64(void *user, const double *direction);
 
-// Support function of a box gauge.
-double qdist_box_gauge_value_f64(void *user, const double *direction);
+// Support function of a box unit set.
+double qdist_box_unit_value_f64(void *user, const double *direction);
 
-// Support function of a cross-polytope gauge.
-double qdist_cross_gauge_value_f64(void *user, const double *direction);
+// Support function of a cross-polytope unit set.
+double qdist_cross_unit_value_f64(void *user, const double *direction);
 
-// Support function of a segment gauge.
-double qdist_segment_gauge_value_f64(void *user, const double *direction);
+// Support function of a segment unit set.
+double qdist_segment_unit_value_f64(void *user, const double *direction);
 
-// Support function of a gauge of vertices.
-double qdist_vertices_gauge_value_f64(void *user, const double *direction);
+// Support function of a unit set of vertices.
+double qdist_vertices_unit_value_f64(void *user, const double *direction);
 
 /* =========================================================== QUERIES ===========================================================
  *
@@ -889,10 +889,10 @@ double qdist_vertices_gauge_value_f64(void *user, const double *direction);
  * The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
  * gives the derivative with respect to any parameter p of A or Q from quantities of the result:
  *
- *   dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
+ *   dd/dp = (direction . ds/dp - d * dh_Q/dp) / h_Q
  *
  * with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
- * there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+ * there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / h_Q.
  * It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
  * one-sided derivatives, each the least of those at all minimisers. */
 
@@ -974,7 +974,7 @@ typedef struct {
     // The point of A (its ball included) that is farthest along `direction`.
     double support[6];
     // h_Q(direction).
-    double gauge;
+    double unit;
     // With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
     double rival[6];
     // Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
@@ -1011,39 +1011,39 @@ qdist_status qdist_depth3_f64(qdist_solver *solver,
                               const qdist_options_f64 *options,
                               qdist_depth_f64 *result);
 
-// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, which is also the solver's. Q may be
+// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
 // NULL: the unit ball.
 qdist_status qdist_solve2_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
-                              const qdist_gauge_f64 *q,
+                              const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
 // The same in dimension 3.
 qdist_status qdist_solve3_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
-                              const qdist_gauge_f64 *q,
+                              const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
 // The same in dimension 4.
 qdist_status qdist_solve4_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
-                              const qdist_gauge_f64 *q,
+                              const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
 // The same in dimension 5.
 qdist_status qdist_solve5_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
-                              const qdist_gauge_f64 *q,
+                              const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
 // The same in dimension 6.
 qdist_status qdist_solve6_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
-                              const qdist_gauge_f64 *q,
+                              const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
@@ -1174,39 +1174,39 @@ qdist_status qdist_depth2_f64(qdist_solver *solver,
  * qdist_solve. Flat means: no wider than the rounding of A's support function. Costs dimension + 1 to 2 * dimension + 2 more support
  * calls. A program that calls one of them contains the solvers of all lower dimensions too. */
 
-// The depth d of the origin in the set A with respect to the gauge set Q, in the linear span of A, in dimension 2. Arguments as of
+// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in dimension 2. Arguments as of
 // qdist_solve2.
 qdist_status qdist_solve_in_span2_f64(qdist_solver *solver,
                                       const qdist_set_f64 *a,
-                                      const qdist_gauge_f64 *q,
+                                      const qdist_unit_f64 *q,
                                       const qdist_options_f64 *options,
                                       qdist_result_f64 *result);
 
 // The same in dimension 3.
 qdist_status qdist_solve_in_span3_f64(qdist_solver *solver,
                                       const qdist_set_f64 *a,
-                                      const qdist_gauge_f64 *q,
+                                      const qdist_unit_f64 *q,
                                       const qdist_options_f64 *options,
                                       qdist_result_f64 *result);
 
 // The same in dimension 4.
 qdist_status qdist_solve_in_span4_f64(qdist_solver *solver,
                                       const qdist_set_f64 *a,
-                                      const qdist_gauge_f64 *q,
+                                      const qdist_unit_f64 *q,
                                       const qdist_options_f64 *options,
                                       qdist_result_f64 *result);
 
 // The same in dimension 5.
 qdist_status qdist_solve_in_span5_f64(qdist_solver *solver,
                                       const qdist_set_f64 *a,
-                                      const qdist_gauge_f64 *q,
+                                      const qdist_unit_f64 *q,
                                       const qdist_options_f64 *options,
                                       qdist_result_f64 *result);
 
 // The same in dimension 6.
 qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
                                       const qdist_set_f64 *a,
-                                      const qdist_gauge_f64 *q,
+                                      const qdist_unit_f64 *q,
                                       const qdist_options_f64 *options,
                                       qdist_result_f64 *result);
 
@@ -1225,7 +1225,7 @@ qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
  *       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
  *   } */
 
-// What a loop remembers: plain data without addresses, for one set, one gauge and one dimension. Made by
+// What a loop remembers: plain data without addresses, for one set, one unit set and one dimension. Made by
 // qdist_tracker_init_f64.
 typedef struct {
     // sizeof(qdist_tracker_f64).
@@ -1243,11 +1243,11 @@ qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimensi
 // The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
 // remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
 qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
-                                           const qdist_gauge_f64 *q,
+                                           const qdist_unit_f64 *q,
                                            double moved,
                                            double *lower);
 
-// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, for the next tick of a loop, and
+// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, for the next tick of a loop, and
 // takes note of it in the tracker. Arguments as of qdist_solve2; besides:
 //
 // moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
@@ -1255,7 +1255,7 @@ qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
 qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
-                                   const qdist_gauge_f64 *q,
+                                   const qdist_unit_f64 *q,
                                    double moved,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
@@ -1264,7 +1264,7 @@ qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
 qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
-                                   const qdist_gauge_f64 *q,
+                                   const qdist_unit_f64 *q,
                                    double moved,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
@@ -1273,7 +1273,7 @@ qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
 qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
-                                   const qdist_gauge_f64 *q,
+                                   const qdist_unit_f64 *q,
                                    double moved,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
@@ -1282,7 +1282,7 @@ qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
 qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
-                                   const qdist_gauge_f64 *q,
+                                   const qdist_unit_f64 *q,
                                    double moved,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
@@ -1291,7 +1291,7 @@ qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
 qdist_status qdist_solve_warm6_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
-                                   const qdist_gauge_f64 *q,
+                                   const qdist_unit_f64 *q,
                                    double moved,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
@@ -1547,18 +1547,18 @@ int32_t qdist_set_join_support_f32(void *user, const float *direction, float *po
 
 int32_t qdist_set_join_exhaustive_f32(void *user, const float *direction, float *point);
 
-/* ====================================================== GAUGE SETS, FLOAT ====================================================== */
+/* ======================================================= UNIT SETS, FLOAT ======================================================= */
 
-typedef float (*qdist_gauge_value_f32)(void *user, const float *direction);
+typedef float (*qdist_unit_value_f32)(void *user, const float *direction);
 
-typedef int32_t (*qdist_gauge_point_f32)(void *user, const float *direction, float *point);
+typedef int32_t (*qdist_unit_point_f32)(void *user, const float *direction, float *point);
 
-typedef int32_t (*qdist_gauge_vertex_f32)(void *user, uint32_t index, float *point);
+typedef int32_t (*qdist_unit_vertex_f32)(void *user, uint32_t index, float *point);
 
 typedef struct {
-    qdist_gauge_value_f32 value;
-    qdist_gauge_point_f32 point;
-    qdist_gauge_vertex_f32 vertex;
+    qdist_unit_value_f32 value;
+    qdist_unit_point_f32 point;
+    qdist_unit_vertex_f32 vertex;
     qdist_mirrored mirrored;
     void *user;
     float extent;
@@ -1566,50 +1566,50 @@ typedef struct {
     float inner_radius;
     uint32_t vertex_count;
     uint32_t dimension;
-} qdist_gauge_f32;
+} qdist_unit_f32;
 
 typedef struct {
     float semi_axes[6];
     const float *rotation;
     uint32_t dimension;
-} qdist_ellipsoid_gauge_f32;
+} qdist_ellipsoid_unit_f32;
 
 typedef struct {
     float half[6];
     uint32_t dimension;
-} qdist_box_gauge_f32;
+} qdist_box_unit_f32;
 
 typedef struct {
     float semi_axes[6];
     uint32_t dimension;
-} qdist_cross_gauge_f32;
+} qdist_cross_unit_f32;
 
 typedef struct {
     float end[6];
     uint32_t dimension;
-} qdist_segment_gauge_f32;
+} qdist_segment_unit_f32;
 
-qdist_status qdist_gauge_ball_f32(qdist_gauge_f32 *gauge, float radius);
+qdist_status qdist_unit_ball_f32(qdist_unit_f32 *unit, float radius);
 
-qdist_status qdist_gauge_ellipsoid_f32(qdist_gauge_f32 *gauge, const qdist_ellipsoid_gauge_f32 *shape);
+qdist_status qdist_unit_ellipsoid_f32(qdist_unit_f32 *unit, const qdist_ellipsoid_unit_f32 *shape);
 
-qdist_status qdist_gauge_box_f32(qdist_gauge_f32 *gauge, const qdist_box_gauge_f32 *shape);
+qdist_status qdist_unit_box_f32(qdist_unit_f32 *unit, const qdist_box_unit_f32 *shape);
 
-qdist_status qdist_gauge_cross_f32(qdist_gauge_f32 *gauge, const qdist_cross_gauge_f32 *shape);
+qdist_status qdist_unit_cross_f32(qdist_unit_f32 *unit, const qdist_cross_unit_f32 *shape);
 
-qdist_status qdist_gauge_segment_f32(qdist_gauge_f32 *gauge, const qdist_segment_gauge_f32 *shape);
+qdist_status qdist_unit_segment_f32(qdist_unit_f32 *unit, const qdist_segment_unit_f32 *shape);
 
-qdist_status qdist_gauge_vertices_f32(qdist_gauge_f32 *gauge, const qdist_points_f32 *shape);
+qdist_status qdist_unit_vertices_f32(qdist_unit_f32 *unit, const qdist_points_f32 *shape);
 
-float qdist_ellipsoid_gauge_value_f32(void *user, const float *direction);
+float qdist_ellipsoid_unit_value_f32(void *user, const float *direction);
 
-float qdist_box_gauge_value_f32(void *user, const float *direction);
+float qdist_box_unit_value_f32(void *user, const float *direction);
 
-float qdist_cross_gauge_value_f32(void *user, const float *direction);
+float qdist_cross_unit_value_f32(void *user, const float *direction);
 
-float qdist_segment_gauge_value_f32(void *user, const float *direction);
+float qdist_segment_unit_value_f32(void *user, const float *direction);
 
-float qdist_vertices_gauge_value_f32(void *user, const float *direction);
+float qdist_vertices_unit_value_f32(void *user, const float *direction);
 
 /* ======================================================== QUERIES, FLOAT ======================================================== */
 
@@ -1651,7 +1651,7 @@ typedef struct {
     float upper;
     float direction[6];
     float support[6];
-    float gauge;
+    float unit;
     float rival[6];
     float weights[7];
     float points[42];
@@ -1676,31 +1676,31 @@ qdist_status qdist_depth3_f32(qdist_solver *solver,
 
 qdist_status qdist_solve2_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
-                              const qdist_gauge_f32 *q,
+                              const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
 qdist_status qdist_solve3_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
-                              const qdist_gauge_f32 *q,
+                              const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
 qdist_status qdist_solve4_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
-                              const qdist_gauge_f32 *q,
+                              const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
 qdist_status qdist_solve5_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
-                              const qdist_gauge_f32 *q,
+                              const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
 qdist_status qdist_solve6_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
-                              const qdist_gauge_f32 *q,
+                              const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
@@ -1788,31 +1788,31 @@ qdist_status qdist_depth2_f32(qdist_solver *solver,
 
 qdist_status qdist_solve_in_span2_f32(qdist_solver *solver,
                                       const qdist_set_f32 *a,
-                                      const qdist_gauge_f32 *q,
+                                      const qdist_unit_f32 *q,
                                       const qdist_options_f32 *options,
                                       qdist_result_f32 *result);
 
 qdist_status qdist_solve_in_span3_f32(qdist_solver *solver,
                                       const qdist_set_f32 *a,
-                                      const qdist_gauge_f32 *q,
+                                      const qdist_unit_f32 *q,
                                       const qdist_options_f32 *options,
                                       qdist_result_f32 *result);
 
 qdist_status qdist_solve_in_span4_f32(qdist_solver *solver,
                                       const qdist_set_f32 *a,
-                                      const qdist_gauge_f32 *q,
+                                      const qdist_unit_f32 *q,
                                       const qdist_options_f32 *options,
                                       qdist_result_f32 *result);
 
 qdist_status qdist_solve_in_span5_f32(qdist_solver *solver,
                                       const qdist_set_f32 *a,
-                                      const qdist_gauge_f32 *q,
+                                      const qdist_unit_f32 *q,
                                       const qdist_options_f32 *options,
                                       qdist_result_f32 *result);
 
 qdist_status qdist_solve_in_span6_f32(qdist_solver *solver,
                                       const qdist_set_f32 *a,
-                                      const qdist_gauge_f32 *q,
+                                      const qdist_unit_f32 *q,
                                       const qdist_options_f32 *options,
                                       qdist_result_f32 *result);
 
@@ -1828,14 +1828,14 @@ typedef struct {
 qdist_status qdist_tracker_init_f32(qdist_tracker_f32 *tracker, uint32_t dimension);
 
 qdist_status qdist_tracker_lower_after_f32(const qdist_tracker_f32 *tracker,
-                                           const qdist_gauge_f32 *q,
+                                           const qdist_unit_f32 *q,
                                            float moved,
                                            float *lower);
 
 qdist_status qdist_solve_warm2_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
-                                   const qdist_gauge_f32 *q,
+                                   const qdist_unit_f32 *q,
                                    float moved,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
@@ -1843,7 +1843,7 @@ qdist_status qdist_solve_warm2_f32(qdist_solver *solver,
 qdist_status qdist_solve_warm3_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
-                                   const qdist_gauge_f32 *q,
+                                   const qdist_unit_f32 *q,
                                    float moved,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
@@ -1851,7 +1851,7 @@ qdist_status qdist_solve_warm3_f32(qdist_solver *solver,
 qdist_status qdist_solve_warm4_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
-                                   const qdist_gauge_f32 *q,
+                                   const qdist_unit_f32 *q,
                                    float moved,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
@@ -1859,7 +1859,7 @@ qdist_status qdist_solve_warm4_f32(qdist_solver *solver,
 qdist_status qdist_solve_warm5_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
-                                   const qdist_gauge_f32 *q,
+                                   const qdist_unit_f32 *q,
                                    float moved,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
@@ -1867,7 +1867,7 @@ qdist_status qdist_solve_warm5_f32(qdist_solver *solver,
 qdist_status qdist_solve_warm6_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
-                                   const qdist_gauge_f32 *q,
+                                   const qdist_unit_f32 *q,
                                    float moved,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);

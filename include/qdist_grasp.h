@@ -124,7 +124,7 @@ typedef int32_t qdist_kink;
 #define QDIST_KINK_RIVAL 1
 
 // Two or more points of Q touch the boundary of the wrench set.
-#define QDIST_KINK_GAUGE 2
+#define QDIST_KINK_UNIT 2
 
 // No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
 // way, d is constant along a curve, or the result was too far from a minimum.
@@ -321,7 +321,7 @@ qdist_status qdist_force_closure_f64(qdist_solver *solver,
 qdist_status qdist_best_of6_f64(qdist_solver *solver,
                                 const qdist_set_f64 *sets,
                                 uint32_t count,
-                                const qdist_gauge_f64 *q,
+                                const qdist_unit_f64 *q,
                                 const qdist_options_f64 *options,
                                 qdist_best_f64 *best);
 
@@ -447,7 +447,7 @@ qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
                                        const qdist_wrench_frame_f64 *frame,
                                        uint32_t active,
                                        double rank_tolerance,
-                                       const qdist_gauge_f64 *q,
+                                       const qdist_unit_f64 *q,
                                        const qdist_result_f64 *result,
                                        qdist_refined_f64 *refined,
                                        qdist_contact_gradient_f64 *gradients,
@@ -633,7 +633,7 @@ int32_t qdist_pyramid_wrenches_support_f64(void *user, const double *direction, 
 // QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
 qdist_status qdist_opposed_mean_f64(const qdist_pyramid_f64 *pyramids,
                                     uint32_t count,
-                                    qdist_segment_gauge_f64 *segment);
+                                    qdist_segment_unit_f64 *segment);
 
 // FRoGGeR's normalised min-weight metric N l from t: t / (1 + t). Increasing in t, so that it takes a bracket to a bracket. Its default asks for 0.3.
 double qdist_min_weight_f64(double t);
@@ -734,7 +734,7 @@ qdist_status qdist_force_closure_f32(qdist_solver *solver,
 qdist_status qdist_best_of6_f32(qdist_solver *solver,
                                 const qdist_set_f32 *sets,
                                 uint32_t count,
-                                const qdist_gauge_f32 *q,
+                                const qdist_unit_f32 *q,
                                 const qdist_options_f32 *options,
                                 qdist_best_f32 *best);
 
@@ -807,7 +807,7 @@ qdist_status qdist_grasp_gradients_f32(const qdist_wrenches_f32 *wrenches,
                                        const qdist_wrench_frame_f32 *frame,
                                        uint32_t active,
                                        float rank_tolerance,
-                                       const qdist_gauge_f32 *q,
+                                       const qdist_unit_f32 *q,
                                        const qdist_result_f32 *result,
                                        qdist_refined_f32 *refined,
                                        qdist_contact_gradient_f32 *gradients,
@@ -910,9 +910,7 @@ qdist_status qdist_set_pyramid_wrenches_f32(qdist_set_f32 *set, const qdist_pyra
 
 int32_t qdist_pyramid_wrenches_support_f32(void *user, const float *direction, float *point);
 
-qdist_status qdist_opposed_mean_f32(const qdist_pyramid_f32 *pyramids,
-                                    uint32_t count,
-                                    qdist_segment_gauge_f32 *segment);
+qdist_status qdist_opposed_mean_f32(const qdist_pyramid_f32 *pyramids, uint32_t count, qdist_segment_unit_f32 *segment);
 
 float qdist_min_weight_f32(float t);
 

@@ -43,7 +43,7 @@ header() {
 }
 
 { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-header capi/src/prelude.h "status version symmetry" "solver sets shapes points join half_space combine gauges query plane span warm" |
+header capi/src/prelude.h "status version symmetry" "solver sets shapes points join half_space combine unit_sets query plane span warm" |
     cat -s >"$out"
 header capi/src/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
 header capi/src/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"

@@ -25,8 +25,8 @@ bounds: lower, rounded down | bounds.rs | else { @value - slack@ } | value
 bounds: upper of a ball, margin | bounds.rs | (height + @margin@ + self.radius) * per_ball | T::zero()
 bounds: lower of a ball, margin | bounds.rs | (offset - @margin@ + self.radius) * per_ball | T::zero()
 bounds: upper of any Q, margin | bounds.rs | let top = height + @margin@ | T::zero()
-bounds: upper of any Q, error of Q | bounds.rs | { @gauge - gauge_error@ } | gauge
-bounds: negative upper of any Q, error of Q | bounds.rs | else { @gauge + gauge_error@ } | gauge
+bounds: upper of any Q, error of Q | bounds.rs | { @unit - unit_error@ } | unit
+bounds: negative upper of any Q, error of Q | bounds.rs | else { @unit + unit_error@ } | unit
 bounds: by direction, the set's errors | bounds.rs | let sum = @sum_along(n, &self.errors)@ | T::zero()
 bounds: by direction, rounding of heights | bounds.rs | + @T::count(2 * N + 4) * T::ROUNDOFF * sum_along(n, &self.reach)@; | T::zero()
 bounds: by direction, rounding of the sum | bounds.rs | @sum + sum * (T::count(2 * N + 4) * T::ROUNDOFF)@ | sum
@@ -50,8 +50,8 @@ bracket: known floor that is disproved | query/bracket.rs | self.floor > T::zero
 query: certainly outside | query/mod.rs | height + @self.margin_along(direction)@ < | T::zero()
 query: known floor, rounding | query/mod.rs | lower * self.scale - @lower * self.scale * T::count(2) * T::ROUNDOFF@ | T::zero()
 query: subnormal bounds | query/mod.rs | { @value + outward * T::TINY@ } | value
-query: Q without extent | query/mod.rs | if @gauge <= self.gauge_error@ | gauge <= T::zero()
-query: keys, error of Q | query/mod.rs | self.gauge(normal)? + @self.gauge_error@ | T::zero()
+query: Q without extent | query/mod.rs | if @unit <= self.unit_error@ | unit <= T::zero()
+query: keys, error of Q | query/mod.rs | self.unit(normal)? + @self.unit_error@ | T::zero()
 
 expansion: from the key to the offset | plan/expansion.rs | - @whole.abs() * (T::count(5) * T::ROUNDOFF)@ | T::zero()
 expansion: thin first simplex | plan/expansion.rs | let thin = @self.resolution_along(&direction) + margin + margin@ | T::zero()
@@ -65,7 +65,7 @@ conewise: each halving | plan/conewise.rs | query.margin() * T::count(3 + @cone.
 
 rays: points off | plan/rays.rs | N>| @query.margin()@ + error | T::zero()
 rays: crossings off | plan/rays.rs | query.margin() + @error@ + least | T::zero()
-rays: vertices of Q off | plan/rays.rs | + @least * query.gauge_error()@; | T::zero()
+rays: vertices of Q off | plan/rays.rs | + @least * query.unit_error()@; | T::zero()
 rays: rounding of the lower bound | plan/rays.rs | lower - @lower.abs() * (T::count(8) * T::ROUNDOFF)@ | T::zero()
 rays: loss in a ball of Q | plan/rays.rs | Ok(Some(@margin(query) / inner@)) | T::zero()
 rays: loss in a ball of A | plan/rays.rs | .map(|radius| @least * (margin / radius)@) | T::zero()

@@ -198,12 +198,12 @@ impl<T: Real> Bounds<T> {
         Self::outward((offset - margin + self.radius) * per_ball, false)
     }
 
-    /// Upper bound from a support value along a unit normal where a general Q has value `gauge` >= 0, itself off by
-    /// at most `gauge_error`.
+    /// Upper bound from a support value along a unit normal where a general Q has value `unit` >= 0, itself off by
+    /// at most `unit_error`.
     #[inline]
-    pub fn upper(&self, height: T, margin: T, gauge: T, gauge_error: T) -> T {
+    pub fn upper(&self, height: T, margin: T, unit: T, unit_error: T) -> T {
         let top = height + margin + self.radius;
-        let bottom = if top > T::zero() { gauge - gauge_error } else { gauge + gauge_error };
+        let bottom = if top > T::zero() { unit - unit_error } else { unit + unit_error };
         if bottom > T::zero() { Self::outward(top / bottom, true) } else { T::HUGE }
     }
 }

@@ -1,10 +1,10 @@
-//! What is measured: a set A, a gauge Q, and where it is known the value d_Q(A).
+//! What is measured: a set A, a unit set Q, and where it is known the value d_Q(A).
 //!
 //! Cases are written down in `f64` and built for the scalar that is to be timed.
 
 use crate::contacts::{Contact, Grasp, Norm, planar, spatial};
 use nalgebra::{SMatrix, Vector3};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge};
+use qdist::qset::{Ball, CrossPolytope, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Ellipsoid, Support};
 use qdist::{Options, Outcome, Real, Vector, Workspace};
 use qdist_benches::common::dice::Dice;
@@ -46,18 +46,18 @@ impl<const N: usize> Case<N> {
         }
     }
 
-    pub fn q<T: Real>(&self) -> Box<dyn Gauge<T, N>> {
+    pub fn q<T: Real>(&self) -> Box<dyn UnitSet<T, N>> {
         let sizes = |x: [f64; N]| Vector::from(x.map(T::of));
         match self.q {
             Metric::Ball => Box::new(Ball::unit()),
-            Metric::Ellipsoid(x) => Box::new(EllipsoidGauge::new(sizes(x), SMatrix::identity()).expect("semi axes")),
+            Metric::Ellipsoid(x) => Box::new(UnitEllipsoid::new(sizes(x), SMatrix::identity()).expect("semi axes")),
             Metric::Cross(x) => Box::new(CrossPolytope::new(sizes(x)).expect("semi axes")),
-            Metric::Box(x) => Box::new(BoxGauge::new(sizes(x)).expect("half extents")),
+            Metric::Box(x) => Box::new(UnitBox::new(sizes(x)).expect("half extents")),
         }
     }
 }
 
-/// Rows (a1) to (a5) of Table I: five gauges on one set. `corner` is the value for the box, which differs in the plane.
+/// Rows (a1) to (a5) of Table I: five unit sets on one set. `corner` is the value for the box, which differs in the plane.
 fn table<const N: usize>(suffix: &str, contacts: Vec<Contact<N>>, corner: f64) -> Vec<Case<N>> {
     let mut long = [1.0; N];
     long[0] = 2.0;

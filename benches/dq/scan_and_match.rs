@@ -13,7 +13,7 @@
 //! The bracket is not rounded outwards: this measures time, it certifies nothing.
 
 use nalgebra::{Const, DimMin, SMatrix};
-use qdist::qset::Gauge;
+use qdist::qset::UnitSet;
 use qdist::support::Support;
 use qdist::{Outcome, Vector};
 use std::time::{Duration, Instant};
@@ -45,7 +45,7 @@ pub struct Result {
 }
 
 struct Surface<'a, const N: usize> {
-    q: &'a dyn Gauge<f64, N>,
+    q: &'a dyn UnitSet<f64, N>,
     points: Vec<Vector<f64, N>>,
     facets: Vec<Facet<N>>,
     inside: Vector<f64, N>,
@@ -55,7 +55,7 @@ struct Surface<'a, const N: usize> {
 /// when the surface is no longer one.
 pub fn solve<const N: usize>(
     a: &dyn Support<f64, N>,
-    q: &dyn Gauge<f64, N>,
+    q: &dyn UnitSet<f64, N>,
     matching: Matching,
     eps: f64,
     max_facets: usize,
@@ -82,13 +82,13 @@ where
         let lowest = surface.facets.iter().min_by(|f, g| f.key.total_cmp(&g.key));
         let Some(&Facet { normal, offset, key, .. }) = lowest.filter(|_| whole) else { break Outcome::Precision };
         let point = support(&normal);
-        let (height, gauge) = (normal.dot(&point), q.value(&normal).expect("a value"));
+        let (height, unit) = (normal.dot(&point), q.value(&normal).expect("a value"));
         lower = f64::max(0.0, key);
-        upper = f64::min(upper, if gauge > 0.0 { height / gauge } else { f64::MAX });
+        upper = f64::min(upper, if unit > 0.0 { height / unit } else { f64::MAX });
         if height < 0.0 {
             break Outcome::Separated;
         }
-        if height - offset <= eps * gauge {
+        if height - offset <= eps * unit {
             break Outcome::Converged;
         }
         if surface.facets.len() > max_facets {
@@ -142,8 +142,8 @@ where
         let length = normal.norm();
         let normal = normal / length;
         let offset = 1.0 / length + normal.dot(&self.inside);
-        let gauge = self.q.value(&normal).expect("a value");
-        let key = if gauge > 0.0 { offset / gauge } else { f64::MAX };
+        let unit = self.q.value(&normal).expect("a value");
+        let key = if unit > 0.0 { offset / unit } else { f64::MAX };
         self.facets.push(Facet { vertices, normal, offset, key });
         offset.is_finite()
     }

@@ -1,4 +1,4 @@
-//! What the entry points of both scalars share: checked pointers, callbacks as sets and gauges, and loops over run-time
+//! What the entry points of both scalars share: checked pointers, callbacks as sets and unit sets, and loops over run-time
 //! dimensions.
 
 use super::status::qdist_interrupt;
@@ -12,7 +12,7 @@ use core::ffi::c_void;
 use qdist::NOT_FINITE;
 use qdist::internal::norm;
 use qdist::internal::{check_numbers, check_sizes, one_by_one};
-use qdist::qset::Gauge;
+use qdist::qset::UnitSet;
 use qdist::support::Failure;
 use qdist::{Real, Vector};
 
@@ -302,7 +302,7 @@ impl Deadline {
 
 pub type VertexFn<T> = unsafe extern "C" fn(user: *mut c_void, index: u32, point: *mut T) -> i32;
 
-/// What a gauge struct of the caller says, NULL and 0 included.
+/// What a unit set struct of the caller says, NULL and 0 included.
 pub struct Parts<T> {
     pub value: Option<ValueFn<T>>,
     pub point: Option<SupportFn<T>>,
@@ -314,8 +314,8 @@ pub struct Parts<T> {
     pub vertex_count: u32,
 }
 
-/// A gauge of the caller, as a [`Gauge`].
-pub struct CallbackGauge<T> {
+/// A unit set of the caller, as a [`UnitSet`].
+pub struct CallbackUnit<T> {
     parts: Parts<T>,
     function: ValueFn<T>,
     error: T,
@@ -323,7 +323,7 @@ pub struct CallbackGauge<T> {
     code: Cell<i32>,
 }
 
-impl<T: Real> CallbackGauge<T> {
+impl<T: Real> CallbackUnit<T> {
     /// Checks the numbers. Where the extent is not known, the values along the axes bound it.
     ///
     /// # Safety
@@ -337,7 +337,7 @@ impl<T: Real> CallbackGauge<T> {
         if length(parts.inner_radius)? > extent && extent > T::zero() {
             return Err(QDIST_ERROR_ARGUMENT);
         }
-        let mut gauge = Self { parts, function, error: T::zero(), code: Cell::new(0) };
+        let mut unit = Self { parts, function, error: T::zero(), code: Cell::new(0) };
         if !(extent > T::zero()) {
             let mut corner = Vector::<T, N>::zeros();
             let mut axis = Vector::<T, N>::zeros();
@@ -345,8 +345,8 @@ impl<T: Real> CallbackGauge<T> {
             for i in 0..N {
                 for sign in [T::one(), -T::one()] {
                     axis[i] = sign;
-                    let value = gauge.ask(&axis);
-                    // What is no value of a gauge makes the error NaN, and ends the query.
+                    let value = unit.ask(&axis);
+                    // What is no value of a unit set makes the error NaN, and ends the query.
                     corner[i] = if value >= T::zero() { corner[i].at_least(value) } else { T::of(f64::NAN) };
                     empty &= value == T::zero();
                 }
@@ -357,8 +357,8 @@ impl<T: Real> CallbackGauge<T> {
             }
             extent = norm(&corner);
         }
-        gauge.error = T::count(16 * N) * T::ROUNDOFF * extent;
-        Ok(gauge)
+        unit.error = T::count(16 * N) * T::ROUNDOFF * extent;
+        Ok(unit)
     }
 
     /// The code of the vertex function, if that ended the query with `failure`.
@@ -373,7 +373,7 @@ impl<T: Real> CallbackGauge<T> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for CallbackGauge<T> {
+impl<T: Real, const N: usize> UnitSet<T, N> for CallbackUnit<T> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(self.ask(u))

@@ -84,7 +84,7 @@ pub const QDIST_KINK_NONE: qdist_kink = 0;
 /// Another direction bounds d as tightly: the minimiser is not unique.
 pub const QDIST_KINK_RIVAL: qdist_kink = 1;
 /// Two or more points of Q touch the boundary of the wrench set.
-pub const QDIST_KINK_GAUGE: qdist_kink = 2;
+pub const QDIST_KINK_UNIT: qdist_kink = 2;
 /// No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
 /// way, d is constant along a curve, or the result was too far from a minimum.
 pub const QDIST_KINK_DEGENERATE: qdist_kink = 3;
@@ -95,7 +95,7 @@ pub(super) fn kink(kink: Option<Kink>) -> qdist_kink {
     match kink {
         None => QDIST_KINK_NONE,
         Some(Kink::Rival) => QDIST_KINK_RIVAL,
-        Some(Kink::Gauge) => QDIST_KINK_GAUGE,
+        Some(Kink::UnitSet) => QDIST_KINK_UNIT,
         Some(Kink::Degenerate) => QDIST_KINK_DEGENERATE,
         Some(Kink::NotClosed) => QDIST_KINK_NOT_CLOSED,
     }

@@ -5,7 +5,7 @@
 //! * `grasp` (feature): codes of the second header, `include/qdist_grasp.h`, whose structs and functions are in `f64::grasp`.
 //! * `mesh` (feature): the third header, `include/qdist_mesh.h`, of a library that needs `std`.
 //! * [`generic`]: what the entry points of both scalars share. Checked pointers, callbacks as a
-//!   [`Support`](qdist::support::Support) and a [`Gauge`](qdist::qset::Gauge), and loops over run-time dimensions.
+//!   [`Support`](qdist::support::Support) and a [`UnitSet`](qdist::qset::Unit set), and loops over run-time dimensions.
 //! * [`f64`](mod@f64): the structs and functions with suffix `_f64`, written by hand, since the header generator does not
 //!   expand macros. [`f32`](mod@f32): the same with `_f32`, made of it by `build.rs`.
 //! * `panic` (feature): what the freestanding library does about a panic, which cannot happen.

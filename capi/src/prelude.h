@@ -1,7 +1,7 @@
 /* qdist: certified generalized penetration distance of convex sets, in fixed memory.
  *
  * The depth of two overlapping bodies, or their distance; the depth of the origin in a convex set of dimension 2 to 6 with
- * respect to a gauge set. Every answer is a bracket: lower <= d <= upper, rounding included.
+ * respect to a unit set. Every answer is a bracket: lower <= d <= upper, rounding included.
  *
  *     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 64, 128)];
  *     qdist_solver *solver;
@@ -26,7 +26,7 @@
  * Errors      A function returns a status: QDIST_OK, or an error that says what is wrong with the arguments. Then nothing
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
- *             are checked at every call; shapes and lists when a set, body or gauge is made of them.
+ *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps

@@ -28,7 +28,7 @@ pub const QDIST_ERROR_STRUCT_SIZE: qdist_status = 4;
 pub const QDIST_ERROR_WORKSPACE_SIZE: qdist_status = 5;
 /// Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
 pub const QDIST_ERROR_ALIGNMENT: qdist_status = 6;
-/// The dimension is not one of 2 to 6, or solver, set, gauge and function are not of the same dimension.
+/// The dimension is not one of 2 to 6, or solver, set, unit set and function are not of the same dimension.
 pub const QDIST_ERROR_DIMENSION: qdist_status = 7;
 /// The solver was made for the other scalar type.
 pub const QDIST_ERROR_SCALAR: qdist_status = 8;
@@ -139,7 +139,7 @@ pub const QDIST_PLAN_WARM: qdist_plan = 4;
 /// user: interrupt_user of the options or the call.
 pub type qdist_interrupt = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
-/// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a gauge returned NaN or a negative
+/// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a unit set returned NaN or a negative
 /// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 pub const QDIST_CALLBACK_NONFINITE: i32 = -2147483647 - 1;
 

@@ -10,11 +10,11 @@ pub const QDIST_SYMMETRY_AXIS: u32 = 1;
 /// All rotations about the origin of the body's frame leave the set unchanged.
 pub const QDIST_SYMMETRY_FULL: u32 = 2;
 
-/// Of a set or gauge: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
+/// Of a set or unit set: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
 /// when it certainly does not, else 0. A search by cones leaves out what is an image of something else under a change of sign
 /// that both A and Q allow.
 ///
-/// user: the pointer from the set or gauge.
+/// user: the pointer from the set or unit set.
 pub type qdist_mirrored = Option<unsafe extern "C" fn(user: *mut c_void, signs: u32) -> i32>;
 
 /// What answers for a body without end. Not for functions of your own.

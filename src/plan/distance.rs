@@ -7,7 +7,7 @@
 use crate::bounds::Axes;
 use crate::math::{Vector, norm};
 use crate::polytope::simplex::{Simplex, Vertex};
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::scalar::Real;
 use crate::support::failure::EMPTY;
 use crate::support::{Failure, Support, total};
@@ -106,7 +106,7 @@ pub struct Inflated<'a, T, const N: usize>(pub &'a dyn Support<T, N>);
 
 impl<T: Real, const N: usize> Inflated<'_, T, N> {
     /// The set to ask and the ball term to add at the end: the core and its radius where Q is a ball, else the inflated set and none.
-    pub fn for_gauge(&self, q: &dyn Gauge<T, N>) -> (&dyn Support<T, N>, T) {
+    pub fn for_unit(&self, q: &dyn UnitSet<T, N>) -> (&dyn Support<T, N>, T) {
         let radius = self.0.radius();
         if q.ball_radius().is_none() && radius > T::zero() { (self, T::zero()) } else { (self.0, radius) }
     }

@@ -118,6 +118,6 @@ fn decided<T: Real, const N: usize>(
 
 /// What the rays may cost.
 fn cost<T: Real, const N: usize>(rays: &RaySearch<T, N>, query: &Query<'_, T, N>) -> u64 {
-    let gauge = if query.spares_gauge() { 0 } else { query.work.gauge() };
-    rays.left(query).saturating_mul((N as u64 + 9) * (Work::<N>::STEP + gauge)) / 4
+    let unit = if query.spares_unit() { 0 } else { query.work.unit() };
+    rays.left(query).saturating_mul((N as u64 + 9) * (Work::<N>::STEP + unit)) / 4
 }

@@ -168,7 +168,7 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     /// What the margin costs of the least crossing (see above), whose points may be off by `error` beside; `None` when nothing of it is certain.
     fn cost_of_margin(&mut self, query: &mut Query<'_, T, N>, least: T, error: T) -> Result<Option<T>, Failure> {
         // Taken after the last question of each kind: where A does not know its extent, the margin is one of the points that were seen.
-        let margin = |query: &Query<'_, T, N>| query.margin() + error + least * query.gauge_error();
+        let margin = |query: &Query<'_, T, N>| query.margin() + error + least * query.unit_error();
         let inner = query.inner_radius();
         if inner > T::zero() {
             return Ok(Some(margin(query) / inner));

@@ -99,7 +99,7 @@ fn follow<T: Real, const N: usize>(
             break;
         }
         let direction = plane * (T::one() / length);
-        let floor = if query.spares_gauge() { ray.floor(&direction) } else { T::zero() };
+        let floor = if query.spares_unit() { ray.floor(&direction) } else { T::zero() };
         let (vertex, height) = query.support_beyond(&direction, floor)?;
         if query.is_outside(&direction, height) {
             return Ok(Shot::Stopped(Stop::Outside));

@@ -1,4 +1,4 @@
-//! The gauge set Q: what one unit of depth means in each direction.
+//! The unit set Q: what one unit of depth means in each direction.
 //!
 //! Q is a compact convex set that contains the origin (perhaps on its boundary) and may have any dimension
 //! (paper, eq. 16 and 24). The solver needs its support function only:
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The Euclidean [`Ball`] makes d_Q the ordinary penetration depth; a [`Segment`] from the origin shoots a
-//! ray; an [`Ellipsoid`](EllipsoidGauge) or [`Vertices`] weigh the directions of a task.
+//! ray; an [`Ellipsoid`](UnitEllipsoid) or [`Vertices`] weigh the directions of a task.
 
 use crate::math::Vector;
 use crate::scalar::Real;
@@ -16,10 +16,10 @@ use crate::support::Failure;
 
 mod sets;
 
-pub use sets::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, GaugeFn, Segment, Vertices};
+pub use sets::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSetFn, Vertices};
 
 /// The support function of Q.
-pub trait Gauge<T: Real, const N: usize> {
+pub trait UnitSet<T: Real, const N: usize> {
     /// h_Q(u) = max { u.q : q in Q } >= 0; positively homogeneous in u.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ pub trait Gauge<T: Real, const N: usize> {
         0
     }
 
-    /// Point number `index` of [`vertex_count`](Gauge::vertex_count).
+    /// Point number `index` of [`vertex_count`](UnitSet::vertex_count).
     fn vertex(&self, _index: usize) -> Vector<T, N> {
         Vector::zeros()
     }
@@ -58,7 +58,7 @@ pub trait Gauge<T: Real, const N: usize> {
         self.ball_radius().is_some()
     }
 
-    /// An upper bound e of the rounding error of [`value`](Gauge::value) for unit u, as a length. Typically a few units
+    /// An upper bound e of the rounding error of [`value`](UnitSet::value) for unit u, as a length. Typically a few units
     /// of roundoff times the largest |q| in Q.
     fn error(&self) -> T;
 }

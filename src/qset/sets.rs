@@ -1,11 +1,11 @@
-//! The built-in gauge sets. All lengths are in the unit of the set A, or of the wrench that one unit of depth means.
+//! The built-in unit set. All lengths are in the unit of the set A, or of the wrench that one unit of depth means.
 //!
 //! Each set contains the origin and is not the origin alone. The `error` of each is for unit directions; u is the unit
 //! roundoff.
 
 use nalgebra::SMatrix;
 
-use super::Gauge;
+use super::UnitSet;
 use crate::math::{Vector, norm};
 use crate::scalar::Real;
 use crate::support::{BoxShape, Ellipsoid, Failure, Point, Points, ShapeError, Support};
@@ -21,7 +21,7 @@ fn positive<T: Real>(size: T) -> Result<T, ShapeError> {
     if size > T::zero() { Ok(size) } else { Err(ShapeError::Empty) }
 }
 
-impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
+impl<T: Real, const N: usize, G: UnitSet<T, N> + ?Sized> UnitSet<T, N> for &G {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         (**self).value(u)
@@ -55,7 +55,7 @@ impl<T: Real, const N: usize, G: Gauge<T, N> + ?Sized> Gauge<T, N> for &G {
 /// `error`: N/2 + 1 roundoffs of the norm, one of the product: `(N + 4) u radius`.
 ///
 /// ```
-/// use qdist::{qset::{Ball, Gauge}, Vector};
+/// use qdist::{qset::{Ball, Unit set}, Vector};
 /// let q = Ball::new(2.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([0.0, 3.0, 4.0])).unwrap(), 10.0);
 /// ```
@@ -82,7 +82,7 @@ impl<T: Real> Ball<T> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for Ball<T> {
+impl<T: Real, const N: usize> UnitSet<T, N> for Ball<T> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(self.radius * norm(u))
@@ -107,12 +107,12 @@ impl<T: Real, const N: usize> Gauge<T, N> for Ball<T> {
 ///
 /// ```
 /// use nalgebra::SMatrix;
-/// use qdist::{qset::{EllipsoidGauge, Gauge}, Vector};
-/// let q = EllipsoidGauge::new(Vector::from([2.0, 0.0]), SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0)).unwrap();
+/// use qdist::{qset::{UnitEllipsoid, Unit set}, Vector};
+/// let q = UnitEllipsoid::new(Vector::from([2.0, 0.0]), SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0)).unwrap();
 /// assert_eq!(q.value(&Vector::from([7.0, 1.0])).unwrap(), 2.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EllipsoidGauge<T, const N: usize> {
+pub struct UnitEllipsoid<T, const N: usize> {
     /// Column i is semi_i / size times column i of R.
     columns: SMatrix<T, N, N>,
     size: T,
@@ -120,7 +120,7 @@ pub struct EllipsoidGauge<T, const N: usize> {
     error: T,
 }
 
-impl<T: Real, const N: usize> EllipsoidGauge<T, N> {
+impl<T: Real, const N: usize> UnitEllipsoid<T, N> {
     /// The ellipsoid with these semi axes >= 0 along the columns of `rotation`.
     ///
     /// # Errors
@@ -150,7 +150,7 @@ impl<T: Real, const N: usize> EllipsoidGauge<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
+impl<T: Real, const N: usize> UnitSet<T, N> for UnitEllipsoid<T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         let mut squares = -T::zero();
@@ -186,16 +186,16 @@ impl<T: Real, const N: usize> Gauge<T, N> for EllipsoidGauge<T, N> {
 /// `error`: N roundoffs of the sum, which is at most |half|: `(N + 1) u |half|`.
 ///
 /// ```
-/// use qdist::{qset::{BoxGauge, Gauge}, Vector};
-/// let q = BoxGauge::new(Vector::from([1.0, 2.0])).unwrap();
+/// use qdist::{qset::{UnitBox, Unit set}, Vector};
+/// let q = UnitBox::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 3.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoxGauge<T, const N: usize> {
+pub struct UnitBox<T, const N: usize> {
     shape: BoxShape<T, N>,
 }
 
-impl<T: Real, const N: usize> BoxGauge<T, N> {
+impl<T: Real, const N: usize> UnitBox<T, N> {
     /// The box of half extents `half` >= 0.
     ///
     /// # Errors
@@ -207,7 +207,7 @@ impl<T: Real, const N: usize> BoxGauge<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for BoxGauge<T, N> {
+impl<T: Real, const N: usize> UnitSet<T, N> for UnitBox<T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(self.shape.support(u)?.dot(u))
@@ -246,7 +246,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for BoxGauge<T, N> {
 /// `error`: one rounding of a product: `2 u max(semi)`.
 ///
 /// ```
-/// use qdist::{qset::{CrossPolytope, Gauge}, Vector};
+/// use qdist::{qset::{CrossPolytope, Unit set}, Vector};
 /// let q = CrossPolytope::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 2.0);
 /// ```
@@ -267,7 +267,7 @@ impl<T: Real, const N: usize> CrossPolytope<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
+impl<T: Real, const N: usize> UnitSet<T, N> for CrossPolytope<T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         let farther = |m: T, (&s, &x): (&T, &T)| m.at_least(s * x).at_least(-s * x);
@@ -318,7 +318,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for CrossPolytope<T, N> {
 /// `error`: N roundoffs of the product: `(N + 1) u |end|`.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, Segment}, Vector};
+/// use qdist::{qset::{Unit set, Segment}, Vector};
 /// let q = Segment::new(Vector::from([0.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 2.0);
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 0.0);
@@ -340,7 +340,7 @@ impl<T: Real, const N: usize> Segment<T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for Segment<T, N> {
+impl<T: Real, const N: usize> UnitSet<T, N> for Segment<T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(T::zero().at_least(self.end.dot(u)))
@@ -364,7 +364,7 @@ impl<T: Real, const N: usize> Gauge<T, N> for Segment<T, N> {
 /// `error`: that of [`Points`] for the choice, and N roundoffs of the product: `(3 N + 4) u max |q|`.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, Vertices}, Vector};
+/// use qdist::{qset::{Unit set, Vertices}, Vector};
 /// let corners = [[1.0, 0.0], [0.0, 3.0]];
 /// let q = Vertices::new(&corners).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 3.0);
@@ -387,7 +387,7 @@ impl<'a, T: Real, const N: usize> Vertices<'a, T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Gauge<T, N> for Vertices<'_, T, N> {
+impl<T: Real, const N: usize> UnitSet<T, N> for Vertices<'_, T, N> {
     #[inline]
     fn value(&self, u: &Vector<T, N>) -> Result<T, Failure> {
         Ok(T::zero().at_least(self.points.support(u)?.dot(u)))
@@ -406,20 +406,20 @@ impl<T: Real, const N: usize> Gauge<T, N> for Vertices<'_, T, N> {
     }
 }
 
-/// A gauge given by a closure `u -> h_Q(u)` and the bound of its rounding error.
+/// A unit set given by a closure `u -> h_Q(u)` and the bound of its rounding error.
 ///
 /// ```
-/// use qdist::{qset::{Gauge, GaugeFn}, Vector};
-/// let q = GaugeFn::new(|u: &Vector<f64, 2>| Ok(u[0].abs()), 0.0).unwrap();
+/// use qdist::{qset::{Unit set, UnitSetFn}, Vector};
+/// let q = UnitSetFn::new(|u: &Vector<f64, 2>| Ok(u[0].abs()), 0.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([-2.0, 5.0])).unwrap(), 2.0);
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct GaugeFn<F, T> {
+pub struct UnitSetFn<F, T> {
     function: F,
     error: T,
 }
 
-impl<F, T: Real> GaugeFn<F, T> {
+impl<F, T: Real> UnitSetFn<F, T> {
     /// `function` computes h_Q(u) >= 0, positively homogeneous and convex in u, with rounding error at most `error` for
     /// unit u.
     ///
@@ -431,7 +431,7 @@ impl<F, T: Real> GaugeFn<F, T> {
     }
 }
 
-impl<F, T: Real, const N: usize> Gauge<T, N> for GaugeFn<F, T>
+impl<F, T: Real, const N: usize> UnitSet<T, N> for UnitSetFn<F, T>
 where
     F: Fn(&Vector<T, N>) -> Result<T, Failure>,
 {
@@ -457,13 +457,13 @@ mod tests {
         (0..n).map(move |_| Vector::from([next(), next(), next()]))
     }
 
-    /// The value in `f32` against an exact form in `f64`, at unit directions, to within the gauge's own error.
-    fn check(gauge: &impl Gauge<f32, 3>, exact: impl Fn(&Vector<f64, 3>) -> f64) {
+    /// The value in `f32` against an exact form in `f64`, at unit directions, to within the unit set's own error.
+    fn check(unit: &impl UnitSet<f32, 3>, exact: impl Fn(&Vector<f64, 3>) -> f64) {
         for u in directions(3000) {
             let u = u / u.dot(&u).sqrt();
             let v = u.map(f64::from);
-            let (value, truth) = (f64::from(gauge.value(&u).unwrap()), exact(&v));
-            assert!(value >= 0.0 && (value - truth).abs() <= f64::from(gauge.error()), "{u} {value} {truth}");
+            let (value, truth) = (f64::from(unit.value(&u).unwrap()), exact(&v));
+            assert!(value >= 0.0 && (value - truth).abs() <= f64::from(unit.error()), "{u} {value} {truth}");
         }
     }
 
@@ -472,7 +472,7 @@ mod tests {
         for semi in [[1.0f32, 2.0, 3.0], [1e-9, 1.0, 1e9], [0.0, 0.0, 1e-9], [1e-25, 1e-26, 0.0], [1e25, 0.0, 1e25]] {
             let v = Vector::from(semi);
             let w = v.map(f64::from);
-            check(&BoxGauge::new(v).unwrap(), |u| u.zip_map(&w, |x, h| x.abs() * h).sum());
+            check(&UnitBox::new(v).unwrap(), |u| u.zip_map(&w, |x, h| x.abs() * h).sum());
             check(&CrossPolytope::new(v).unwrap(), |u| u.zip_map(&w, |x, h| x.abs() * h).max());
             check(&Segment::new(v).unwrap(), |u| u.dot(&w).max(0.0));
             let points = [semi, [-semi[1], semi[2], semi[0]], [semi[2], -semi[0], -semi[1]]];
@@ -482,10 +482,10 @@ mod tests {
             // Off orthonormal by rounding and a little more.
             let r = SMatrix::<f32, 3, 3>::new(c, -s, 0.0, s, c, 1e-7, 0.0, 0.0, 1.0);
             let r64 = r.map(f64::from);
-            check(&EllipsoidGauge::new(v, r).unwrap(), |u| (r64.transpose() * u).component_mul(&w).norm());
+            check(&UnitEllipsoid::new(v, r).unwrap(), |u| (r64.transpose() * u).component_mul(&w).norm());
         }
         check(&Ball::new(1e9f32).unwrap(), |u| 1e9 * u.norm());
-        check(&GaugeFn::new(|u: &Vector<f32, 3>| Ok(u.x.abs()), 0.0).unwrap(), |u| u.x.abs());
+        check(&UnitSetFn::new(|u: &Vector<f32, 3>| Ok(u.x.abs()), 0.0).unwrap(), |u| u.x.abs());
         check(&&Ball::<f32>::unit(), |u| u.norm());
     }
 
@@ -496,14 +496,14 @@ mod tests {
             let r = SMatrix::<f32, 3, 3>::new(c, -s, 0.0, s, c, off, 0.0, off, 1.0);
             for semi in [[1.0f32, 2.0, 3.0], [1e-6, 1.0, 1.0], [0.5, 0.5, 0.5], [0.0, 1.0, 2.0]] {
                 let (v, least) = (Vector::from(semi), semi[0]);
-                let turned = EllipsoidGauge::new(v, r).unwrap();
-                let gauges: [&dyn Gauge<f32, 3>; 3] =
-                    [&turned, &BoxGauge::new(v).unwrap(), &CrossPolytope::new(v).unwrap()];
+                let turned = UnitEllipsoid::new(v, r).unwrap();
+                let units: [&dyn UnitSet<f32, 3>; 3] =
+                    [&turned, &UnitBox::new(v).unwrap(), &CrossPolytope::new(v).unwrap()];
                 assert!(turned.inner_radius() > least * 0.99 || least == 0.0);
-                for gauge in gauges {
+                for unit in units {
                     for u in directions(500) {
                         let u = u / u.dot(&u).sqrt();
-                        assert!(gauge.value(&u).unwrap() >= gauge.inner_radius() - gauge.error());
+                        assert!(unit.value(&u).unwrap() >= unit.inner_radius() - unit.error());
                     }
                 }
             }
@@ -512,9 +512,9 @@ mod tests {
 
     #[test]
     fn failures_and_radii_pass_through() {
-        let q = GaugeFn::new(|_: &Vector<f64, 2>| Err(Failure(7)), 0.0).unwrap();
+        let q = UnitSetFn::new(|_: &Vector<f64, 2>| Err(Failure(7)), 0.0).unwrap();
         assert_eq!(q.value(&Vector::from([1.0, 0.0])), Err(Failure(7)));
-        assert_eq!(Gauge::<f64, 3>::ball_radius(&&Ball::new(2.0).unwrap()), Some(2.0));
+        assert_eq!(UnitSet::<f64, 3>::ball_radius(&&Ball::new(2.0).unwrap()), Some(2.0));
     }
 
     #[test]
@@ -524,10 +524,10 @@ mod tests {
         assert_eq!(Ball::new(0.0), Err(ShapeError::Empty));
         assert_eq!(Ball::new(-1.0f32), Err(ShapeError::Negative));
         assert_eq!(Ball::new(f64::NAN), Err(ShapeError::NonFinite));
-        assert_eq!(EllipsoidGauge::new(zero, identity), Err(ShapeError::Empty));
-        assert_eq!(EllipsoidGauge::new(Vector::from([1.0, 1.0]), identity * 2.0), Err(ShapeError::NotOrthonormal));
-        assert_eq!(EllipsoidGauge::new(Vector::from([1.0, 1.0]), identity * f64::NAN), Err(ShapeError::NonFinite));
-        assert_eq!(BoxGauge::new(zero), Err(ShapeError::Empty));
+        assert_eq!(UnitEllipsoid::new(zero, identity), Err(ShapeError::Empty));
+        assert_eq!(UnitEllipsoid::new(Vector::from([1.0, 1.0]), identity * 2.0), Err(ShapeError::NotOrthonormal));
+        assert_eq!(UnitEllipsoid::new(Vector::from([1.0, 1.0]), identity * f64::NAN), Err(ShapeError::NonFinite));
+        assert_eq!(UnitBox::new(zero), Err(ShapeError::Empty));
         assert_eq!(CrossPolytope::new(zero), Err(ShapeError::Empty));
         assert_eq!(CrossPolytope::new(Vector::from([-1.0, 1.0])), Err(ShapeError::Negative));
         assert_eq!(Segment::new(zero), Err(ShapeError::Empty));

@@ -2,7 +2,7 @@
 
 use crate::math::{Vector, norm};
 use crate::polytope::simplex::Simplex;
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::scalar::Real;
 
 /// What a run concluded. Whatever it is, the bracket holds.
@@ -30,7 +30,7 @@ pub enum Outcome {
     /// A is flat, as far as the rounding of its points tells, and the origin lies in it: d is 0 for a full-dimensional Q. See
     /// [`Answer::dimension`]. (A set that is only thin ends with `Precision`.)
     Degenerate,
-    /// A support or gauge function failed, or returned values that are not finite.
+    /// A support or unit set function failed, or returned values that are not finite.
     SupportFailed,
     /// Two half spaces overlap without end: no translation separates them. d is infinite, and both bounds are the largest finite number.
     Unbounded,
@@ -77,7 +77,7 @@ pub struct Answer<T, const N: usize> {
     /// s_A(u), the point of A that is farthest along it (its ball term included).
     pub support: Vector<T, N>,
     /// h_Q(u); 1 where `upper` is minus a distance and Q no ball. With `direction` and `support` it makes the gradient of d: see [`Answer::derivative`].
-    pub gauge: T,
+    pub unit: T,
     /// Where the minimiser is known not to be unique (to the tolerance): another direction, more than 8 degrees away, that bounds d as
     /// tightly. `None` says that none was met, not that there is none.
     pub rival: Option<Vector<T, N>>,
@@ -130,9 +130,9 @@ impl<T: Real, const N: usize> Answer<T, N> {
 
     /// The point of dQ that touches A's boundary, d s_Q(u) with the upper bound for d: of all that Q asks for, what A reaches last. For the
     /// wrench set of a grasp it is the wrench that is hardest to exert, and its negative the external wrench that is hardest to resist. `None`
-    /// where Q does not tell its [`mapping`](Gauge::mapping). After [`solve_in_span`](crate::Solver::solve_in_span) its projection on A's span
+    /// where Q does not tell its [`mapping`](UnitSet::mapping). After [`solve_in_span`](crate::Solver::solve_in_span) its projection on A's span
     /// counts.
-    pub fn weakest(&self, q: &dyn Gauge<T, N>) -> Option<Vector<T, N>> {
+    pub fn weakest(&self, q: &dyn UnitSet<T, N>) -> Option<Vector<T, N>> {
         q.mapping(&self.direction).map(|point| point * self.upper)
     }
 
@@ -153,7 +153,7 @@ impl<T: Real, const N: usize> Answer<T, N> {
     pub fn derivative(&self, change: impl Fn(&Vector<T, N>) -> Vector<T, N>) -> T {
         let along = |point: &Vector<T, N>| self.direction.dot(&change(point));
         let sum = self.witness.corners.iter().fold(T::zero(), |sum, c| sum + along(&c.vertex.point) * c.weight);
-        sum / self.gauge
+        sum / self.unit
     }
 }
 

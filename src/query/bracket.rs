@@ -22,7 +22,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
                 // (Points that were seen since may have shown that A knows its points too badly to be called apart.)
                 if upper >= T::zero() && self.bounds.unknown_extent { T::HUGE } else { upper }
             }
-            None => self.bounds.upper(self.height, margin, self.gauge, self.gauge_error),
+            None => self.bounds.upper(self.height, margin, self.unit, self.unit_error),
         }
     }
 
@@ -130,7 +130,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     pub fn reserve(&self, margins: usize) -> T {
         let inner = self.inner_radius();
         let margin = T::count(margins) * self.margin();
-        margin / if inner > T::zero() { inner } else { self.gauge.at_least(T::TINY) }
+        margin / if inner > T::zero() { inner } else { self.unit.at_least(T::TINY) }
     }
 
     /// Is d certainly below the threshold?
@@ -201,7 +201,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// Is Q about as wide along the best direction as elsewhere?
     fn is_wide(&self) -> bool {
-        self.inner_radius() > T::zero() || self.gauge * T::count(16) >= self.widest
+        self.inner_radius() > T::zero() || self.unit * T::count(16) >= self.widest
     }
 
     /// Says so, for other reasons.

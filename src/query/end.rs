@@ -58,8 +58,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         if self.apart {
             return Ok(height);
         }
-        let gauge = self.gauge(direction)?;
-        Ok(if gauge > self.gauge_error { (height + self.bounds.radius) / gauge } else { T::HUGE })
+        let unit = self.unit(direction)?;
+        Ok(if unit > self.unit_error { (height + self.bounds.radius) / unit } else { T::HUGE })
     }
 
     /// The stop after best direction and rival have been asked for without shortcuts.
@@ -68,7 +68,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         let stop = match self.verify() {
             Ok(_) => stop,
             Err(Failure(code)) => {
-                (self.height, self.gauge) = (T::HUGE, T::one());
+                (self.height, self.unit) = (T::HUGE, T::one());
                 Stop::Failed(code)
             }
         };
@@ -131,7 +131,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             upper: self.unscaled(upper, T::one()),
             direction: self.direction,
             support: (self.point + self.direction * self.bounds.radius) / self.scale,
-            gauge: self.gauge,
+            unit: self.unit,
             rival: self.rival().filter(|_| !matches!(stop, Stop::Failed(_))),
             witness,
             plan: self.plan,

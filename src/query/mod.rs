@@ -4,7 +4,7 @@
 use crate::bounds::{Axes, Bounds};
 use crate::math::{Vector, finite};
 use crate::polytope::simplex::Vertex;
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::scalar::Real;
 use crate::support::failure::{NOT_FINITE, TOO_LARGE};
@@ -67,12 +67,12 @@ const RIVAL_COSINE: f64 = 0.99;
 /// One query: A and Q, what they have been asked, and the best upper bound.
 pub(crate) struct Query<'q, T, const N: usize> {
     a: &'q dyn Support<T, N>,
-    q: &'q dyn Gauge<T, N>,
+    q: &'q dyn UnitSet<T, N>,
     /// Radius of Q where it is a ball.
     pub ball: Option<T>,
     /// Its inverse, or 1.
     per_ball: T,
-    gauge_error: T,
+    unit_error: T,
     /// What A says of its extent; 0: nothing.
     extent: T,
     pub bounds: Bounds<T>,
@@ -88,7 +88,7 @@ pub(crate) struct Query<'q, T, const N: usize> {
     /// The best upper bound: unit direction, support value, value of Q, and their quotient without margins.
     pub direction: Vector<T, N>,
     height: T,
-    gauge: T,
+    unit: T,
     ratio: T,
     /// The support point of the core along it.
     point: Vector<T, N>,
@@ -139,15 +139,15 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     /// an error when one of these lengths is negative or not finite (then the query must not be run).
     pub fn new(
         a: &'q dyn Support<T, N>,
-        q: &'q dyn Gauge<T, N>,
+        q: &'q dyn UnitSet<T, N>,
         radius: T,
         options: Options<T, N>,
     ) -> (Self, Result<(), Failure>) {
-        let (extent, support_error, gauge_error) = (a.extent(), a.error(), q.error());
+        let (extent, support_error, unit_error) = (a.extent(), a.error(), q.error());
         let ball = q.ball_radius();
         let per_ball = T::one() / ball.unwrap_or(T::one());
         let inner = if ball.is_some() { T::zero() } else { q.inner_radius() };
-        let sane = are_lengths(&[radius, extent, support_error, gauge_error, inner]);
+        let sane = are_lengths(&[radius, extent, support_error, unit_error, inner]);
         let sane = sane && per_ball.finite() && per_ball > T::zero();
         let checked = if sane { Ok(()) } else { Err(Failure(NOT_FINITE)) };
         // (The answer to a query that is not run is made of them too.)
@@ -157,7 +157,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             q,
             ball,
             per_ball,
-            gauge_error,
+            unit_error,
             extent,
             bounds: Bounds { support_error, radius, dimension: N, unknown_extent: !(extent > T::zero()) },
             axes: None,
@@ -166,7 +166,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             reach: T::zero(),
             direction: Vector::zeros(),
             height: T::HUGE,
-            gauge: T::one(),
+            unit: T::one(),
             ratio: T::HUGE,
             point: Vector::zeros(),
             rival: None,
@@ -311,9 +311,9 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// The same, but the best direction stays what it is.
     pub fn ask(&mut self, direction: &Vector<T, N>) -> Result<Vertex<T, N>, Failure> {
-        let best = (self.direction, self.point, self.height, self.gauge, self.ratio);
+        let best = (self.direction, self.point, self.height, self.unit, self.ratio);
         let found = self.support(direction);
-        (self.direction, self.point, self.height, self.gauge, self.ratio) = best;
+        (self.direction, self.point, self.height, self.unit, self.ratio) = best;
         found.map(|(vertex, _)| vertex)
     }
 
@@ -332,7 +332,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     fn note(&mut self, direction: &Vector<T, N>, height: T, point: &Vector<T, N>, floor: T) -> Result<(), Failure> {
         let top = height + self.bounds.radius;
-        let (gauge, ratio) = if let Some(radius) = self.ball {
+        let (unit, ratio) = if let Some(radius) = self.ball {
             (radius, top * self.per_ball)
         } else if self.apart || self.is_outside(direction, height) {
             // Outside, Q has no say: the distance counts.
@@ -343,13 +343,13 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         } else if floor >= T::HUGE || floor > T::zero() && !(top < self.ratio * floor) {
             return Ok(());
         } else {
-            self.work.add(self.work.gauge());
-            let gauge = self.gauge(direction)?;
-            self.widest = self.widest.at_least(gauge);
-            if gauge <= self.gauge_error {
+            self.work.add(self.work.unit());
+            let unit = self.unit(direction)?;
+            self.widest = self.widest.at_least(unit);
+            if unit <= self.unit_error {
                 return Ok(()); // Q has no extent that way: it bounds nothing.
             }
-            (gauge, top / gauge)
+            (unit, top / unit)
         };
         if ratio < self.ratio {
             if self.seeks_rivals {
@@ -358,7 +358,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
                 self.meet(&old, old_ratio, direction);
             }
             (self.direction, self.point) = (*direction, *point);
-            (self.height, self.gauge, self.ratio) = (height, gauge, ratio);
+            (self.height, self.unit, self.ratio) = (height, unit, ratio);
         } else if self.seeks_rivals {
             let best = self.direction;
             self.meet(direction, ratio, &best);
@@ -395,7 +395,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         (self.is_far(&direction, &self.direction) && self.ties(ratio)).then_some(direction)
     }
 
-    fn gauge(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
+    fn unit(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
         match self.ball {
             Some(radius) => Ok(radius),
             None => {
@@ -411,8 +411,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     }
 
     /// How far h_Q may be off, as a length.
-    pub fn gauge_error(&self) -> T {
-        self.gauge_error
+    pub fn unit_error(&self) -> T {
+        self.unit_error
     }
 
     /// The point of A's core that is known along the best direction.
@@ -421,8 +421,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
     }
 
     /// Does a value of Q cost more than a step of a ray? Then Q is asked only where it may count.
-    pub fn spares_gauge(&self) -> bool {
-        self.work.gauge() > Work::<N>::STEP
+    pub fn spares_unit(&self) -> bool {
+        self.work.unit() > Work::<N>::STEP
     }
 
     /// How many rays decide the query, for a polytopal Q; else 0.
@@ -465,8 +465,8 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         let bottom = match self.ball {
             Some(_) => return Ok(top * self.per_ball),
             None => {
-                self.work.add(Work::<N>::FACET + self.work.gauge());
-                self.gauge(normal)? + self.gauge_error
+                self.work.add(Work::<N>::FACET + self.work.unit());
+                self.unit(normal)? + self.unit_error
             }
         };
         Ok(if bottom > T::zero() { top / bottom } else { T::HUGE })

@@ -8,7 +8,7 @@ pub(crate) struct Work<const N: usize> {
     done: u64,
     allowed: u64,
     /// What a value of Q costs, with so many vertices to look at.
-    gauge: u64,
+    unit: u64,
 }
 
 impl<const N: usize> Work<N> {
@@ -19,12 +19,12 @@ impl<const N: usize> Work<N> {
 
     /// Nothing is done, and everything allowed.
     pub fn new(vertices: usize) -> Self {
-        Work { done: 0, allowed: u64::MAX, gauge: vertices as u64 * 2 * N as u64 / 5 }
+        Work { done: 0, allowed: u64::MAX, unit: vertices as u64 * 2 * N as u64 / 5 }
     }
 
     /// What a value of Q costs.
-    pub fn gauge(&self) -> u64 {
-        self.gauge
+    pub fn unit(&self) -> u64 {
+        self.unit
     }
 
     /// Counts work.

@@ -3,7 +3,7 @@
 //! A solver keeps nothing between queries, so a batch is a loop. What it adds is to stop early: to find the best of many grasps, the depth of most
 //! need not be known. As soon as one is certainly no better than the best so far, it is done, and that costs a fraction of a full answer.
 
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::Options;
 use crate::query::answer::{Answer, Outcome};
 use crate::scalar::Real;
@@ -39,7 +39,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve_each<S: Support<T, N>>(
         &mut self,
         sets: impl IntoIterator<Item = S>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
         mut each: impl FnMut(usize, Answer<T, N>) -> bool,
     ) {
@@ -63,7 +63,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn best_of<S: Support<T, N>>(
         &mut self,
         sets: impl IntoIterator<Item = S>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
     ) -> Option<Best<T, N>> {
         self.best_of_until(sets, q, options, None)
@@ -73,7 +73,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn best_of_until<S: Support<T, N>>(
         &mut self,
         sets: impl IntoIterator<Item = S>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Option<Best<T, N>> {

@@ -15,7 +15,7 @@ use crate::plan::expansion::Expanded;
 use crate::plan::race::{Ended, by_rays, race};
 use crate::polytope::Polytope;
 use crate::polytope::simplex::{Simplex, Vertex};
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::query::{Options, Query};
 use crate::scalar::Real;
@@ -58,9 +58,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// Cost: one support call an iteration, and with N = 3 about five facets, with N = 6 about fifty. 10 to 40 iterations in space for
     /// a relative 1e-6; some thousand for a smooth A in six dimensions and a relative 1e-3. The work is bounded by `options.max_iterations`.
     ///
-    /// Never fails: bad input to the support function or the gauge ends with `SupportFailed` and a bracket that is
+    /// Never fails: bad input to the support function or the unit set ends with `SupportFailed` and a bracket that is
     /// true for the values that were returned.
-    pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, options: &Options<T, N>) -> Answer<T, N> {
+    pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn UnitSet<T, N>, options: &Options<T, N>) -> Answer<T, N> {
         self.solve_until(a, q, options, None)
     }
 
@@ -69,7 +69,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve_until(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
@@ -80,14 +80,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub(crate) fn solve_unless(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
         known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
     ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
-        let (set, radius) = inflated.for_gauge(q);
+        let (set, radius) = inflated.for_unit(q);
         let (mut query, checked) = Query::new(set, q, radius, *options);
         query.interrupt = interrupt;
         let answer = match checked.and_then(|()| query.normalize()).and_then(|()| known(&mut query)) {
@@ -122,11 +122,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve_by_expansion(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
         let inflated = Inflated(a);
-        let (set, radius) = inflated.for_gauge(q);
+        let (set, radius) = inflated.for_unit(q);
         let answer = self.expand_only(Query::new(set, q, radius, *options));
         self.look_again(answer, set, options, |solver, set, options, first, measured| {
             solver.expand_sharper(Query::new(set, q, radius, options), first, measured)

@@ -14,7 +14,7 @@ use crate::math::{Vector, norm, unit};
 use crate::plan::expansion::sample;
 use crate::plan::start::Start;
 use crate::polytope::simplex::{Corner, Simplex, Vertex};
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::answer::{Answer, Outcome, Stop};
 use crate::query::{Options, Query};
 use crate::scalar::Real;
@@ -23,7 +23,7 @@ use crate::support::{Failure, Support, total};
 use heapless::Vec;
 use nalgebra::SMatrix;
 
-/// A set or a gauge seen in a subspace.
+/// A set or a unit set seen in a subspace.
 struct Within<'a, S: ?Sized, T, const N: usize, const K: usize> {
     inner: &'a S,
     basis: &'a SMatrix<T, N, K>,
@@ -74,7 +74,7 @@ impl<T: Real, const N: usize, const K: usize> Support<T, K> for Within<'_, dyn S
     }
 }
 
-impl<T: Real, const N: usize, const K: usize> Gauge<T, K> for Within<'_, dyn Gauge<T, N> + '_, T, N, K> {
+impl<T: Real, const N: usize, const K: usize> UnitSet<T, K> for Within<'_, dyn UnitSet<T, N> + '_, T, N, K> {
     fn value(&self, u: &Vector<T, K>) -> Result<T, Failure> {
         self.inner.value(&(self.basis * u))
     }
@@ -112,7 +112,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve_in_span(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
     ) -> Answer<T, N> {
         self.solve_in_span_until(a, q, options, None)
@@ -122,7 +122,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     pub fn solve_in_span_until(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
     ) -> Answer<T, N> {
@@ -138,7 +138,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn solve_within(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         span: &Span<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
@@ -157,7 +157,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     fn within<const K: usize>(
         &mut self,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         span: &Span<T, N>,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,
@@ -171,7 +171,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             max_iterations: options.max_iterations,
             guess: options.guess.map(|guess| basis.tr_mul(&guess)),
         };
-        let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, span.gauge_size));
+        let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, span.unit_size));
         widened(&narrow.solve_until(&a, &q, &options, interrupt), &basis)
     }
 }
@@ -189,7 +189,7 @@ fn widened<T: Real, const N: usize, const K: usize>(answer: &Answer<T, K>, basis
         upper: answer.upper,
         direction: basis * answer.direction,
         support: basis * answer.support,
-        gauge: answer.gauge,
+        unit: answer.unit,
         rival: answer.rival.map(|rival| basis * rival),
         plan: answer.plan,
         witness: Simplex { corners },
@@ -215,11 +215,11 @@ struct Span<T, const N: usize> {
     /// Largest |a| seen in A.
     reach: T,
     /// Q lies in a ball of this radius.
-    gauge_size: T,
+    unit_size: T,
 }
 
 impl<T: Real, const N: usize> Span<T, N> {
-    /// A set or a gauge of this size in the subspace.
+    /// A set or a unit set of this size in the subspace.
     fn seen<'a, S: ?Sized, const K: usize>(
         &self,
         inner: &'a S,
@@ -231,7 +231,7 @@ impl<T: Real, const N: usize> Span<T, N> {
 }
 
 /// Q lies in a ball of the radius h_Q(e_1) + h_Q(-e_1) + ...
-fn size<T: Real, const N: usize>(q: &dyn Gauge<T, N>) -> Result<T, Failure> {
+fn size<T: Real, const N: usize>(q: &dyn UnitSet<T, N>) -> Result<T, Failure> {
     let mut size = T::zero();
     for i in 0..N {
         for sign in [T::one(), -T::one()] {
@@ -246,7 +246,7 @@ fn size<T: Real, const N: usize>(q: &dyn Gauge<T, N>) -> Result<T, Failure> {
 /// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it. Adds its support calls to `calls`.
 fn span<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
-    q: &dyn Gauge<T, N>,
+    q: &dyn UnitSet<T, N>,
     options: &Options<T, N>,
     calls: &mut u32,
 ) -> Option<Span<T, N>> {
@@ -259,7 +259,7 @@ fn span<T: Real, const N: usize>(
 fn span_seen<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     a: &dyn Support<T, N>,
-    q: &dyn Gauge<T, N>,
+    q: &dyn UnitSet<T, N>,
 ) -> Option<Span<T, N>> {
     let mut start = Start::new(query.first_direction());
     while start.missing() > 0 {
@@ -295,21 +295,21 @@ fn span_seen<T: Real, const N: usize>(
     } else {
         tilt += T::count(4 * N) * (query.margin() + query.resolution()) / start.least_width();
     }
-    // (Where a gauge fails, the query in space says so.)
-    let gauge_size = size(q).ok()?;
-    Some(Span { axes, dimension: start.dimension(), tilt, reach: query.true_reach(), gauge_size })
+    // (Where a unit set fails, the query in space says so.)
+    let unit_size = size(q).ok()?;
+    Some(Span { axes, dimension: start.dimension(), tilt, reach: query.true_reach(), unit_size })
 }
 
 /// On a line, two directions are all there are. `None`, with its support calls added to `calls`, when that does not decide.
 fn solve_line<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
-    q: &dyn Gauge<T, N>,
+    q: &dyn UnitSet<T, N>,
     span: &Span<T, N>,
     options: &Options<T, N>,
     calls: &mut u32,
 ) -> Option<Answer<T, N>> {
     let identity = SMatrix::<T, N, N>::identity();
-    let (a, q) = (span.seen(a, &identity, span.reach), span.seen(q, &identity, span.gauge_size));
+    let (a, q) = (span.seen(a, &identity, span.reach), span.seen(q, &identity, span.unit_size));
     let axis = unit(span.axes.first()?);
     let (mut query, checked) = Query::new(&a, &q, T::zero(), *options);
     checked.and_then(|()| query.normalize()).ok()?;

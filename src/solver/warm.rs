@@ -16,7 +16,7 @@ use crate::bounds::Bracket;
 use crate::math::Vector;
 use crate::plan::shoot::descend;
 use crate::polytope::simplex::Simplex;
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::query::{Options, Query};
 use crate::scalar::Real;
@@ -29,7 +29,7 @@ pub const REMEMBERED: usize = 4;
 /// Directions nearer to each other than this cosine (18 degrees) are remembered once.
 const DISTINCT: f64 = 0.95;
 
-/// The state of a warm start: plain data, to be kept by the caller between the ticks of one loop over one gauge.
+/// The state of a warm start: plain data, to be kept by the caller between the ticks of one loop over one unit set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracker<T, const N: usize> {
     /// Minimisers of the last ticks, the latest first; unused ones are zero.
@@ -74,7 +74,7 @@ impl<T: Real, const N: usize> Tracker<T, N> {
     /// The lower bound after the set has moved by at most `moved` (a Hausdorff distance, >= 0, in A's unit); minus the largest number where nothing is
     /// known, or where Q has no known inner radius.
     #[must_use]
-    pub fn lower_after(&self, moved: T, q: &dyn Gauge<T, N>) -> T {
+    pub fn lower_after(&self, moved: T, q: &dyn UnitSet<T, N>) -> T {
         let inner = Some(q.inner_radius()).filter(|inner| inner.finite()).unwrap_or(T::zero());
         if !(self.lower > -T::HUGE) || !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
             return -T::HUGE;
@@ -105,7 +105,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         tracker: &mut Tracker<T, N>,
         a: &dyn Support<T, N>,
-        q: &dyn Gauge<T, N>,
+        q: &dyn UnitSet<T, N>,
         moved: T,
         options: &Options<T, N>,
         interrupt: Option<&dyn Fn() -> bool>,

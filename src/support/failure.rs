@@ -9,10 +9,10 @@ pub struct Failure(pub i32);
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            NOT_FINITE => f.write_str("a set or gauge returned a number that is NaN, infinite or negative"),
+            NOT_FINITE => f.write_str("a set or unit set returned a number that is NaN, infinite or negative"),
             TOO_LARGE => f.write_str("the numbers are so large that arithmetic with them overflows"),
             UNBOUNDED => f.write_str("a half space was asked for a farthest point"),
-            code => write!(f, "a support or gauge function failed with code {code}"),
+            code => write!(f, "a support or unit set function failed with code {code}"),
         }
     }
 }

@@ -25,7 +25,7 @@ pub enum ShapeError {
     Negative,
     /// A number is not finite, or so large that sums of sizes could overflow.
     NonFinite,
-    /// A list of points is empty, or a gauge set is the origin alone.
+    /// A list of points is empty, or a unit set is the origin alone.
     Empty,
     /// A rotation matrix is farther than 1e-3 from orthonormal: use [`Linear`](super::Linear).
     NotOrthonormal,

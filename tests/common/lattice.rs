@@ -5,7 +5,7 @@
 
 use super::dd::Dd;
 use super::dice::Dice;
-use qdist::qset::Gauge;
+use qdist::qset::UnitSet;
 use qdist::support::{Failure, Support};
 use qdist::{Real, Vector};
 
@@ -101,31 +101,31 @@ impl<T: Real> Support<T, 3> for Lattice {
     }
 }
 
-/// A gauge that is off by as much as it states, always to the same side.
+/// A unit set that is off by as much as it states, always to the same side.
 pub struct Leaning<'a, T> {
-    pub gauge: &'a dyn Gauge<T, 3>,
+    pub unit: &'a dyn UnitSet<T, 3>,
     pub by: T,
 }
 
-impl<T: Real> Gauge<T, 3> for Leaning<'_, T> {
+impl<T: Real> UnitSet<T, 3> for Leaning<'_, T> {
     fn value(&self, u: &Vector<T, 3>) -> Result<T, Failure> {
-        Ok((self.gauge.value(u)? + self.by * u.dot(u).root()).at_least(T::zero()))
+        Ok((self.unit.value(u)? + self.by * u.dot(u).root()).at_least(T::zero()))
     }
     fn mapping(&self, u: &Vector<T, 3>) -> Option<Vector<T, 3>> {
-        self.gauge.mapping(u)
+        self.unit.mapping(u)
     }
     fn vertex_count(&self) -> usize {
-        self.gauge.vertex_count()
+        self.unit.vertex_count()
     }
     fn vertex(&self, index: usize) -> Vector<T, 3> {
-        let vertex = self.gauge.vertex(index);
+        let vertex = self.unit.vertex(index);
         vertex + vertex * (self.by / vertex.dot(&vertex).root())
     }
     fn inner_radius(&self) -> T {
-        self.gauge.inner_radius()
+        self.unit.inner_radius()
     }
     fn error(&self) -> T {
-        self.gauge.error() + self.by.abs() * T::of(1.0001)
+        self.unit.error() + self.by.abs() * T::of(1.0001)
     }
 }
 

@@ -9,7 +9,7 @@ use common::dice::Dice;
 use common::hull::{ExactHull, signed_depth};
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Ellipsoid, Linear, Margin, Points, Rigid, Support};
 use qdist::{Body, Options, Outcome, Real, Vector};
 
@@ -17,7 +17,7 @@ use qdist::{Body, Options, Outcome, Real, Vector};
 struct Known<T: Real, const N: usize> {
     name: String,
     set: Box<dyn Support<T, N>>,
-    gauge: Box<dyn Gauge<T, N>>,
+    unit: Box<dyn UnitSet<T, N>>,
     d: f64,
     /// How far `d` may be off: rounding of its own evaluation.
     blur: f64,
@@ -47,30 +47,24 @@ fn problems<T: Real, const N: usize>(seed: u64) -> Vec<Known<T, N>> {
     let cuboid = BoxShape::new(vector::<T, N>(h)).unwrap();
     let moved = Rigid::new(cuboid, SMatrix::identity(), vector::<T, N>(t)).unwrap();
     let room = |i: usize| h[i] - t[i].abs();
-    let mut add = |name: &str, set: Box<dyn Support<T, N>>, gauge: Box<dyn Gauge<T, N>>, d: f64, blur: f64| {
-        all.push(Known { name: format!("{name}, N = {N}, roundoff {:e}", T::ROUNDOFF.to_f64()), set, gauge, d, blur });
+    let mut add = |name: &str, set: Box<dyn Support<T, N>>, unit: Box<dyn UnitSet<T, N>>, d: f64, blur: f64| {
+        all.push(Known { name: format!("{name}, N = {N}, roundoff {:e}", T::ROUNDOFF.to_f64()), set, unit, d, blur });
     };
     add("ball in box", Box::new(moved), Box::new(Ball::unit()), least::<N>(room), few);
     let grown = Margin::new(moved, T::of(0.25)).unwrap();
     add("ball in grown box", Box::new(grown), Box::new(Ball::unit()), least::<N>(room) + 0.25, few);
     let scaled = least::<N>(|i| room(i) / g[i]);
-    add("box in box", Box::new(moved), Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap()), scaled, few);
+    add("box in box", Box::new(moved), Box::new(UnitBox::new(vector::<T, N>(g)).unwrap()), scaled, few);
     add("cross in box", Box::new(moved), Box::new(CrossPolytope::new(vector::<T, N>(g)).unwrap()), scaled, few);
     let ray: [f64; N] = std::array::from_fn(|_| exact::<T>(dice.range(0.1, 1.0)));
     let exit = least::<N>(|i| (h[i] + t[i]) / ray[i]);
     add("ray in box", Box::new(moved), Box::new(Segment::new(vector::<T, N>(ray)).unwrap()), exit, few);
     let ellipsoid = Ellipsoid::new(vector::<T, N>(h)).unwrap();
     add("ball in ellipsoid", Box::new(ellipsoid), Box::new(Ball::unit()), least::<N>(|i| h[i]), few);
-    let q = EllipsoidGauge::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
+    let q = UnitEllipsoid::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
     add("ellipsoid in ellipsoid", Box::new(ellipsoid), Box::new(q), least::<N>(|i| h[i] / g[i]), few);
     let corner = (0..N).map(|i| (g[i] / h[i]).powi(2)).sum::<f64>().sqrt();
-    add(
-        "box in ellipsoid",
-        Box::new(ellipsoid),
-        Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap()),
-        1.0 / corner,
-        few,
-    );
+    add("box in ellipsoid", Box::new(ellipsoid), Box::new(UnitBox::new(vector::<T, N>(g)).unwrap()), 1.0 / corner, few);
     // Sheared: face normals are the rows of the inverse.
     let r = dice.rotation::<N>();
     let m = SMatrix::<f64, N, N>::from_fn(|i, j| exact::<T>(r[i][j] * g[j] + 0.1 * dice.signed()));
@@ -90,7 +84,13 @@ fn problems<T: Real, const N: usize>(seed: u64) -> Vec<Known<T, N>> {
         if gap > 0.0 {
             let grown = Margin::new(beside, T::of(0.25)).unwrap();
             add("grown box beside", Box::new(grown), Box::new(Ball::unit()), d + 0.25, few);
-            add("box beside, box gauge", Box::new(beside), Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap()), d, few);
+            add(
+                "box beside, box unit set",
+                Box::new(beside),
+                Box::new(UnitBox::new(vector::<T, N>(g)).unwrap()),
+                d,
+                few,
+            );
         }
     }
     all
@@ -117,7 +117,7 @@ fn limits<T: Real, const N: usize>() {
         let mut best = (f64::MIN, f64::MAX);
         for limit in 1..=40 {
             let options = Options { max_iterations: limit, relative: T::zero(), ..brisk() };
-            let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+            let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
             holds(&k, &s, &options, size);
             let rounding = 4096.0 * T::ROUNDOFF.to_f64() * (1.0 + k.d.abs()) * N as f64;
             let inside = k.d > 0.0;
@@ -140,7 +140,7 @@ fn capacities<T: Real, const N: usize>() {
                 let size = (N + 1 + extra, 2 * N + facets);
                 let mut memory = Memory::new::<T, N>(size.0, size.1);
                 let options = Options { relative: T::of(1e-9), ..brisk() };
-                let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+                let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
                 holds(&k, &s, &options, size);
             }
         }
@@ -153,10 +153,10 @@ fn used_memory<T: Real, const N: usize>() {
     for k in problems::<T, N>(33) {
         let options = Options { relative: T::of(1e-3), max_iterations: 60, ..brisk() };
         let mut memory = Memory::new::<T, N>(256, 4096);
-        let full = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+        let full = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
         let size = (full.vertices.max(N + 1), full.facets.max(2 * N));
         let mut memory = Memory::new::<T, N>(size.0, size.1);
-        let again = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+        let again = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
         holds(&k, &again, &options, size);
         assert_eq!((full.outcome, full.lower, full.upper), (again.outcome, again.lower, again.upper), "{}", k.name);
     }
@@ -178,7 +178,7 @@ fn thresholds<T: Real, const N: usize>() {
                         max_iterations: limit,
                         ..brisk()
                     };
-                    let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+                    let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
                     holds(&k, &s, &options, size);
                     let rounding = 64.0 * T::ROUNDOFF.to_f64();
                     match s.outcome {
@@ -226,7 +226,7 @@ fn tolerances<T: Real, const N: usize>() {
                     _ => Some(vector(dice.direction::<N>())),
                 };
                 let options = Options { absolute: T::of(absolute), relative: T::of(relative), guess, ..brisk() };
-                let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+                let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
                 holds(&k, &s, &options, size);
             }
         }
@@ -241,10 +241,10 @@ fn reuse<T: Real, const N: usize>() {
     let mut solver = used.solver::<T, N>();
     for k in problems::<T, N>(36) {
         let options = brisk();
-        let s = Seen::from(&solver.solve(&*k.set, &*k.gauge, &options));
+        let s = Seen::from(&solver.solve(&*k.set, &*k.unit, &options));
         holds(&k, &s, &options, size);
         let mut fresh = Memory::new::<T, N>(size.0, size.1);
-        let t = Seen::from(&fresh.solver::<T, N>().solve(&*k.set, &*k.gauge, &options));
+        let t = Seen::from(&fresh.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
         assert_eq!(
             (s.outcome, s.lower, s.upper, s.iterations),
             (t.outcome, t.lower, t.upper, t.iterations),

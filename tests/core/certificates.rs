@@ -15,11 +15,11 @@ use common::exact::{outside, pair_value, searched_upper};
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Points, Rigid, Support};
 use qdist::{Answer, Depth, Options, Outcome, Real, Vector};
 
-/// A centred set and a gauge by their numbers.
+/// A centred set and a unit set by their numbers.
 enum Set {
     Box,
     Ellipsoid,
@@ -50,7 +50,7 @@ fn set_value(set: &Set, h: &[f64], t: &[f64], u: &[Dd]) -> Dd {
     own + dot(u, &wide(t))
 }
 
-fn gauge_value(q: &Q, g: &[f64], u: &[Dd]) -> Dd {
+fn unit_value(q: &Q, g: &[f64], u: &[Dd]) -> Dd {
     let scaled: Vec<Dd> = u.iter().zip(g).map(|(&u, &g)| u * Dd::new(g)).collect();
     match q {
         Q::Ball(r) => Dd::new(*r) * norm(u),
@@ -96,11 +96,11 @@ fn general<T: Real, const N: usize>() {
             1 => (Set::Ellipsoid, Box::new(Ellipsoid::new(vector::<T, N>(h)).unwrap())),
             _ => (Set::Points(slices(&points)), Box::new(Points::new(&typed_points).unwrap())),
         };
-        let (q, gauge): (Q, Box<dyn Gauge<T, N> + '_>) = match dice.below(6) {
+        let (q, unit): (Q, Box<dyn UnitSet<T, N> + '_>) = match dice.below(6) {
             0 => (Q::Ball(g[0]), Box::new(Ball::new(T::of(g[0])).unwrap())),
-            1 => (Q::Box, Box::new(BoxGauge::new(vector::<T, N>(g)).unwrap())),
+            1 => (Q::Box, Box::new(UnitBox::new(vector::<T, N>(g)).unwrap())),
             2 => (Q::Cross, Box::new(CrossPolytope::new(vector::<T, N>(g)).unwrap())),
-            3 => (Q::Ellipsoid, Box::new(EllipsoidGauge::new(vector::<T, N>(g), SMatrix::identity()).unwrap())),
+            3 => (Q::Ellipsoid, Box::new(UnitEllipsoid::new(vector::<T, N>(g), SMatrix::identity()).unwrap())),
             4 => (Q::Segment, Box::new(Segment::new(vector::<T, N>(g)).unwrap())),
             _ => (Q::Vertices(slices(&corners)), Box::new(Vertices::new(&typed_corners).unwrap())),
         };
@@ -109,14 +109,14 @@ fn general<T: Real, const N: usize>() {
         let options = Options { max_iterations: limit, ..brisk() };
         let (vertices, facets) = (N + 1 + dice.below(60), 2 * N + dice.below(800));
         let mut memory = Memory::new::<T, N>(vertices, facets);
-        let answer: Answer<T, N> = memory.solver::<T, N>().solve(&moved, &*gauge, &options);
+        let answer: Answer<T, N> = memory.solver::<T, N>().solve(&moved, &*unit, &options);
         let seen = Seen::from(&answer);
         let tell = format!("N {N}, round {round}: {seen:?}");
         assert_eq!(broken_promise(&seen, &options, vertices, facets), None, "{tell}");
 
         // The direction proves the upper bound. For an origin outside in units of length.
         let n: Vec<Dd> = answer.direction.iter().map(|x| Dd::new(x.to_f64())).collect();
-        let (length, top, bottom) = (norm(&n), set_value(&set, &h, &t, &n), gauge_value(&q, &g, &n));
+        let (length, top, bottom) = (norm(&n), set_value(&set, &h, &t, &n), unit_value(&q, &g, &n));
         assert!((length.hi - 1.0).abs() <= 16.0 * u * N as f64, "{tell}");
         let ball = matches!(q, Q::Ball(_));
         let proved = if seen.upper < 0.0 && !ball { top / length } else { top / bottom };
@@ -126,13 +126,13 @@ fn general<T: Real, const N: usize>() {
         if seen.lower > 0.0 {
             for _ in 0..200 {
                 let v = wide(&dice.direction::<N>());
-                let (top, bottom) = (set_value(&set, &h, &t, &v), gauge_value(&q, &g, &v));
+                let (top, bottom) = (set_value(&set, &h, &t, &v), unit_value(&q, &g, &v));
                 assert!((top - Dd::new(seen.lower) * bottom).hi >= -BLUR, "{tell}: {v:?}");
             }
             for p in 0..N {
                 for sign in [1.0, -1.0] {
                     let v: Vec<Dd> = (0..N).map(|i| Dd::new(if i == p { sign } else { 0.0 })).collect();
-                    let (top, bottom) = (set_value(&set, &h, &t, &v), gauge_value(&q, &g, &v));
+                    let (top, bottom) = (set_value(&set, &h, &t, &v), unit_value(&q, &g, &v));
                     assert!((top - Dd::new(seen.lower) * bottom).hi >= -BLUR, "{tell}: {v:?}");
                 }
             }

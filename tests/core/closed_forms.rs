@@ -8,7 +8,7 @@ use crate::common;
 use common::dice::Dice;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, UnitSetFn, Vertices};
 use qdist::support::{
     BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Failure, Linear, Margin, Point, Points, Rigid, Scaled, Sphere, Sum,
     Support,
@@ -49,7 +49,11 @@ fn holds<T: Real>(what: &str, s: &Seen, d: f64, want: Want) {
     }
 }
 
-fn solve<T: Real, const N: usize>(a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, options: &Options<T, N>) -> Answer<T, N> {
+fn solve<T: Real, const N: usize>(
+    a: &dyn Support<T, N>,
+    q: &dyn UnitSet<T, N>,
+    options: &Options<T, N>,
+) -> Answer<T, N> {
     let mut memory = Memory::new::<T, N>(768, 16384);
     let answer = memory.solver::<T, N>().solve(a, q, options);
     if let Some(text) = broken_promise(&Seen::from(&answer), options, 768, 16384) {
@@ -58,7 +62,7 @@ fn solve<T: Real, const N: usize>(a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, op
     answer
 }
 
-fn check<T: Real, const N: usize>(what: &str, a: &dyn Support<T, N>, q: &dyn Gauge<T, N>, d: f64, want: Want) {
+fn check<T: Real, const N: usize>(what: &str, a: &dyn Support<T, N>, q: &dyn UnitSet<T, N>, d: f64, want: Want) {
     let answer = solve(a, q, &brisk());
     holds::<T>(
         &format!("{what} ({} dimensions, roundoff {:e})", N, T::ROUNDOFF.to_f64()),
@@ -103,14 +107,14 @@ fn moved_boxes<T: Real, const N: usize>() {
         check("ball in box", &set, &ball, least::<N>(room), asked::<T>());
         check("larger ball in box", &set, &Ball::new(T::of(r)).unwrap(), least::<N>(room) / r, asked::<T>());
         let scaled = least::<N>(|i| room(i) / g[i]);
-        check("box in box", &set, &BoxGauge::new(vector::<T, N>(g)).unwrap(), scaled, asked::<T>());
+        check("box in box", &set, &UnitBox::new(vector::<T, N>(g)).unwrap(), scaled, asked::<T>());
         check("cross-polytope in box", &set, &CrossPolytope::new(vector::<T, N>(g)).unwrap(), scaled, asked::<T>());
-        let turned = EllipsoidGauge::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
+        let turned = UnitEllipsoid::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
         check("ellipsoid in box", &set, &turned, scaled, asked::<T>());
         // A Q of one dimension less, and one of one dimension: only the faces that it faces count.
         let flat: [f64; N] = std::array::from_fn(|i| if i == 0 { 0.0 } else { g[i] });
         let flat_least = (1..N).map(|i| room(i) / g[i]).fold(f64::MAX, f64::min);
-        check("flat box in box", &set, &BoxGauge::new(vector::<T, N>(flat)).unwrap(), flat_least, asked::<T>());
+        check("flat box in box", &set, &UnitBox::new(vector::<T, N>(flat)).unwrap(), flat_least, asked::<T>());
         check(
             "flat cross-polytope",
             &set,
@@ -118,14 +122,14 @@ fn moved_boxes<T: Real, const N: usize>() {
             flat_least,
             asked::<T>(),
         );
-        let flat_ellipsoid = EllipsoidGauge::new(vector::<T, N>(flat), SMatrix::identity()).unwrap();
+        let flat_ellipsoid = UnitEllipsoid::new(vector::<T, N>(flat), SMatrix::identity()).unwrap();
         check("flat ellipsoid in box", &set, &flat_ellipsoid, flat_least, asked::<T>());
         let thin: [f64; N] = std::array::from_fn(|i| if i == N - 1 { g[i] } else { 0.0 });
         let needle = room(N - 1) / g[N - 1];
-        check("needle in box", &set, &BoxGauge::new(vector::<T, N>(thin)).unwrap(), needle, asked::<T>());
+        check("needle in box", &set, &UnitBox::new(vector::<T, N>(thin)).unwrap(), needle, asked::<T>());
     }
 }
-every_type_and_dimension!(symmetric_gauges_in_a_moved_box_meet_the_nearest_face, moved_boxes);
+every_type_and_dimension!(symmetric_units_in_a_moved_box_meet_the_nearest_face, moved_boxes);
 
 /// The ray from the origin along `end` leaves the box where the first coordinate reaches its face.
 fn rays_in_boxes<T: Real, const N: usize>() {
@@ -145,10 +149,10 @@ fn rays_in_boxes<T: Real, const N: usize>() {
         check("segment in box", &set, &Segment::new(vector::<T, N>(end)).unwrap(), exit, asked::<T>());
     }
 }
-every_type_and_dimension!(a_segment_gauge_shoots_a_ray_out_of_a_box, rays_in_boxes);
+every_type_and_dimension!(a_segment_unit_shoots_a_ray_out_of_a_box, rays_in_boxes);
 
 /// Q as the hull of the origin and some points: each point is a ray, and the first to leave bounds all.
-fn vertex_gauges_in_boxes<T: Real, const N: usize>() {
+fn vertex_units_in_boxes<T: Real, const N: usize>() {
     let mut dice = Dice::new(23);
     for _ in 0..4 {
         let h = sizes::<T, N>(&mut dice);
@@ -160,9 +164,9 @@ fn vertex_gauges_in_boxes<T: Real, const N: usize>() {
         check("vertices in box", &set, &Vertices::new(&typed).unwrap(), d, asked::<T>());
     }
 }
-every_type_and_dimension!(a_hull_of_points_as_gauge_is_the_shortest_of_its_rays, vertex_gauges_in_boxes);
+every_type_and_dimension!(a_hull_of_points_as_unit_is_the_shortest_of_its_rays, vertex_units_in_boxes);
 
-/// A centred ellipsoid, against gauges with the same axes: ball and ellipsoid by the shortest axis ratio.
+/// A centred ellipsoid, against unit sets with the same axes: ball and ellipsoid by the shortest axis ratio.
 fn ellipsoids<T: Real, const N: usize>() {
     // Curved sets converge quickly in low dimensions only; in higher ones the bracket is true and not absurdly wide.
     let want = match N {
@@ -175,17 +179,17 @@ fn ellipsoids<T: Real, const N: usize>() {
         let (a, g) = (sizes::<T, N>(&mut dice), sizes::<T, N>(&mut dice));
         let set = Ellipsoid::new(vector::<T, N>(a)).unwrap();
         check("ball in ellipsoid", &set, &Ball::unit(), least::<N>(|i| a[i]), want);
-        let q = EllipsoidGauge::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
+        let q = UnitEllipsoid::new(vector::<T, N>(g), SMatrix::identity()).unwrap();
         check("ellipsoid in ellipsoid", &set, &q, least::<N>(|i| a[i] / g[i]), want);
         // The corners of the box are the first to leave the ellipsoid, the tips of the cross-polytope likewise.
         let corner: [f64; N] = std::array::from_fn(|i| g[i] / a[i]);
-        check("box in ellipsoid", &set, &BoxGauge::new(vector::<T, N>(g)).unwrap(), 1.0 / length(&corner), want);
+        check("box in ellipsoid", &set, &UnitBox::new(vector::<T, N>(g)).unwrap(), 1.0 / length(&corner), want);
         let tips = least::<N>(|i| a[i] / g[i]);
         check("cross-polytope in ellipsoid", &set, &CrossPolytope::new(vector::<T, N>(g)).unwrap(), tips, want);
         check("segment in ellipsoid", &set, &Segment::new(vector::<T, N>(g)).unwrap(), 1.0 / length(&corner), want);
     }
 }
-every_type_and_dimension!(gauges_in_a_centred_ellipsoid, ellipsoids);
+every_type_and_dimension!(units_in_a_centred_ellipsoid, ellipsoids);
 
 /// The simplex { x : x_i >= -1, sum x_i <= 1 }: faces at distance 1 and 1/sqrt(n). Its corners are exact numbers.
 fn simplices<T: Real, const N: usize>() {
@@ -194,7 +198,7 @@ fn simplices<T: Real, const N: usize>() {
     let set = Points::new(&corners).unwrap();
     let n = N as f64;
     check("ball in simplex", &set, &Ball::unit(), 1.0 / n.sqrt(), asked::<T>());
-    check("box in simplex", &set, &BoxGauge::new(vector::<T, N>([1.0; N])).unwrap(), 1.0 / n, asked::<T>());
+    check("box in simplex", &set, &UnitBox::new(vector::<T, N>([1.0; N])).unwrap(), 1.0 / n, asked::<T>());
     let cross = CrossPolytope::new(vector::<T, N>([1.0; N])).unwrap();
     check("cross-polytope in simplex", &set, &cross, 1.0, asked::<T>());
     check("diagonal in simplex", &set, &Segment::new(vector::<T, N>([1.0; N])).unwrap(), 1.0 / n, asked::<T>());
@@ -208,7 +212,7 @@ fn simplices<T: Real, const N: usize>() {
     let doubled = Scaled::new(grown, T::of(2.0)).unwrap();
     check("ball in twice the rounded simplex", &doubled, &Ball::unit(), 2.0 / n.sqrt() + 0.5, asked::<T>());
 }
-every_type_and_dimension!(gauges_in_a_simplex_with_the_inradius_known, simplices);
+every_type_and_dimension!(units_in_a_simplex_with_the_inradius_known, simplices);
 
 /// The parallelotope M [-1, 1]^n with M = R D S (rotation, stretch, shear): facet normals are the rows of M^-1,
 /// at height 1. Every Q then has d = min 1 / h_Q(row).
@@ -223,7 +227,7 @@ fn parallelotopes<T: Real, const N: usize>() {
         let g = sizes::<T, N>(&mut dice);
         let facets = |h: &dyn Fn(&[f64; N]) -> f64| least::<N>(|i| 1.0 / h(&std::array::from_fn(|j| inverse[(i, j)])));
         // The inverse is off by rounding, times the condition number of M (some 10).
-        let blurred = |what: &str, q: &dyn Gauge<T, N>, d: f64| {
+        let blurred = |what: &str, q: &dyn UnitSet<T, N>, d: f64| {
             let s = Seen::from(&solve(&set, q, &brisk()));
             let blur = 1e-13 * d;
             assert!(s.lower <= d + blur && d - blur <= s.upper, "{what}: {d:e} is not in {s:?}");
@@ -231,13 +235,13 @@ fn parallelotopes<T: Real, const N: usize>() {
         };
         blurred("ball", &Ball::unit(), facets(&|u| length(u)));
         let box_value = |u: &[f64; N]| (0..N).map(|i| g[i] * u[i].abs()).sum();
-        blurred("box", &BoxGauge::new(vector::<T, N>(g)).unwrap(), facets(&box_value));
+        blurred("box", &UnitBox::new(vector::<T, N>(g)).unwrap(), facets(&box_value));
         let cross_value = |u: &[f64; N]| (0..N).map(|i| g[i] * u[i].abs()).fold(0.0, f64::max);
         blurred("cross-polytope", &CrossPolytope::new(vector::<T, N>(g)).unwrap(), facets(&cross_value));
         let along = |u: &[f64; N]| (0..N).map(|i| g[i] * u[i]).sum::<f64>().abs();
         // A symmetric set: the ray and its opposite are as long.
         blurred("segment", &Segment::new(vector::<T, N>(g)).unwrap(), facets(&along));
-        let own = GaugeFn::new(
+        let own = UnitSetFn::new(
             |u: &Vector<T, N>| Ok((0..N).fold(T::zero(), |s, i| s + T::of(g[i]) * u[i].abs())),
             T::count(4 * N) * T::ROUNDOFF * T::of(length(&g)),
         )
@@ -245,7 +249,7 @@ fn parallelotopes<T: Real, const N: usize>() {
         blurred("closure", &own, facets(&box_value));
     }
 }
-every_type_and_dimension!(any_gauge_in_a_sheared_box, parallelotopes);
+every_type_and_dimension!(any_unit_in_a_sheared_box, parallelotopes);
 
 /// Sums: boxes add up face by face, balls add up by radius, in any mixture.
 fn sums<T: Real, const N: usize>() {
@@ -261,14 +265,14 @@ fn sums<T: Real, const N: usize>() {
     let axis: [f64; N] = std::array::from_fn(|i| if i == 0 { -1.0 } else { 0.0 });
     let want = if N <= 3 { Want::Relative(1e-3) } else { Want::Truth };
     check("axis in box + ball + box", &sum, &Segment::new(vector::<T, N>(axis)).unwrap(), h[0] + k[0] + r, want);
-    // The gauge is no ball, so the ball term has to be expanded.
+    // The unit set is no ball, so the ball term has to be expanded.
     let ball = Sphere::<T, N>::new(T::of(r)).unwrap();
     let want = match N {
         2 => Want::Relative(1e-3),
         3 => Want::Relative(0.02),
         _ => Want::Truth,
     };
-    let cube = BoxGauge::new(vector::<T, N>([1.0; N])).unwrap();
+    let cube = UnitBox::new(vector::<T, N>([1.0; N])).unwrap();
     check("box in ball", &ball, &cube, r / (N as f64).sqrt(), want);
     check("cross-polytope in ball", &ball, &CrossPolytope::new(vector::<T, N>([1.0; N])).unwrap(), r, want);
     check("ball in ball", &ball, &Ball::new(T::of(0.5)).unwrap(), 2.0 * r, Want::Relative(64.0 * T::ROUNDOFF.to_f64()));
@@ -387,16 +391,16 @@ fn distances<T: Real, const N: usize>() {
         let q: [f64; N] = std::array::from_fn(|_| exact::<T>(dice.signed()));
         check("away from a point", &Point::new(vector::<T, N>(q)).unwrap(), &Ball::unit(), -length(&q), asked::<T>());
         // Another Q measures distances as the Euclidean ball does.
-        let cube = BoxGauge::new(vector::<T, N>([3.0; N])).unwrap();
-        check("box gauge outside", &set, &cube, -length(&gap), asked::<T>());
+        let cube = UnitBox::new(vector::<T, N>([3.0; N])).unwrap();
+        check("box unit set outside", &set, &cube, -length(&gap), asked::<T>());
         // However long Q is in some direction.
         for along in 0..N {
             let long: [f64; N] = std::array::from_fn(|i| if i == along { 100.0 } else { 0.01 });
-            let slab = BoxGauge::new(vector::<T, N>(long)).unwrap();
-            check("long box gauge outside", &set, &slab, -length(&gap), asked::<T>());
+            let slab = UnitBox::new(vector::<T, N>(long)).unwrap();
+            check("long box unit set outside", &set, &slab, -length(&gap), asked::<T>());
             let end: [f64; N] = std::array::from_fn(|i| if i == along { 1.0 } else { 0.0 });
             let ray = Segment::new(vector::<T, N>(end)).unwrap();
-            check("segment gauge outside", &set, &ray, -length(&gap), asked::<T>());
+            check("segment unit set outside", &set, &ray, -length(&gap), asked::<T>());
         }
     }
 }
@@ -496,7 +500,7 @@ fn table_one<T: Real>() {
     let options = Options { relative: T::of(1e-3), ..brisk() };
     // Large enough for the polytopal Q; the round ones end with Capacity and a true bracket.
     let mut memory = Memory::new::<T, 6>(512, 8192);
-    let mut row = |what: &str, q: &dyn Gauge<T, 6>, d: f64, printed: f64, width: f64| {
+    let mut row = |what: &str, q: &dyn UnitSet<T, 6>, d: f64, printed: f64, width: f64| {
         assert!((d - printed).abs() < 1.5e-4, "{what}: the closed form is not the paper's value");
         let s = Seen::from(&memory.solver::<T, 6>().solve(&grasp, q, &options));
         assert_eq!(broken_promise(&s, &options, 512, 8192), None);
@@ -508,9 +512,9 @@ fn table_one<T: Real>() {
     let mut semi = ones;
     semi[0] = T::of(2.0);
     let a2 = 0.41 / (4.0 * 0.1681f64 + 1.69 + 1.0).sqrt();
-    row("a2", &EllipsoidGauge::new(semi, SMatrix::identity()).unwrap(), a2, 0.2235, 1.0);
+    row("a2", &UnitEllipsoid::new(semi, SMatrix::identity()).unwrap(), a2, 0.2235, 1.0);
     row("a3", &CrossPolytope::new(ones).unwrap(), 0.41 / 1.3, 0.3154, 0.3);
-    row("a4", &BoxGauge::new(ones).unwrap(), 0.41 / (0.41 + 2.3 * 2f64.sqrt()), 0.1119, 0.3);
+    row("a4", &UnitBox::new(ones).unwrap(), 0.41 / (0.41 + 2.3 * 2f64.sqrt()), 0.1119, 0.3);
     // x = [-1, 1] on the x axis, as a cross-polytope with one axis and as the hull of two points.
     let axis = vector::<T, 6>([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     row("a5", &CrossPolytope::new(axis).unwrap(), 1.0, 1.0, 1e-3);

@@ -11,7 +11,7 @@ use common::lattice::{
 };
 use nalgebra::Matrix3;
 use qdist::internal::{Axes, Bounds};
-use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment, Vertices};
+use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::{Answer, Options, Outcome, Plan, Real, Tracker, Vector, Workspace};
 
 fn holds<T: Real>(answer: &Answer<T, 3>, d: Dd, what: &str) {
@@ -38,7 +38,7 @@ impl Plans {
 }
 
 /// Puts one query in all ways.
-fn ask<T: Real>(set: &Lattice, q: &dyn Gauge<T, 3>, d: Dd, what: &str, plans: &mut Plans) {
+fn ask<T: Real>(set: &Lattice, q: &dyn UnitSet<T, 3>, d: Dd, what: &str, plans: &mut Plans) {
     let what = format!("{what} {set:?}");
     let mut large = Workspace::<T, 3, 64, 128>::new();
     // Without a tolerance the run ends where rounding does.
@@ -69,29 +69,29 @@ fn ask<T: Real>(set: &Lattice, q: &dyn Gauge<T, 3>, d: Dd, what: &str, plans: &m
 }
 
 /// Sets Q: a box and an ellipsoid of these half axes, in units of a power of two; the box as its corners too. With their h of integer vectors.
-struct Gauges<T> {
-    cuboid: BoxGauge<T, 3>,
+struct Units<T> {
+    cuboid: UnitBox<T, 3>,
     corners: Vec<[T; 3]>,
-    round: EllipsoidGauge<T, 3>,
+    round: UnitEllipsoid<T, 3>,
     half: Point,
     unit: f64,
 }
 
-impl<T: Real> Gauges<T> {
+impl<T: Real> Units<T> {
     fn new(half: Point, unit: f64) -> Self {
         let axes = half.map(|x| T::of(x as f64 * unit));
         let corner = |s: usize| std::array::from_fn(|i| if s >> i & 1 == 1 { axes[i] } else { -axes[i] });
-        let cuboid = BoxGauge::new(Vector::from(axes)).unwrap();
-        let round = EllipsoidGauge::new(Vector::from(axes), Matrix3::identity()).unwrap();
-        Gauges { cuboid, corners: (0..8).map(corner).collect(), round, half, unit }
+        let cuboid = UnitBox::new(Vector::from(axes)).unwrap();
+        let round = UnitEllipsoid::new(Vector::from(axes), Matrix3::identity()).unwrap();
+        Units { cuboid, corners: (0..8).map(corner).collect(), round, half, unit }
     }
 
     fn random(dice: &mut Dice) -> Self {
-        Gauges::new(std::array::from_fn(|_| 1 + dice.below(9) as i64), dice.pick(&[0.0625, 1.0, 16.0]))
+        Units::new(std::array::from_fn(|_| 1 + dice.below(9) as i64), dice.pick(&[0.0625, 1.0, 16.0]))
     }
 
     /// `d` gives the d of an h; `ask` is told each Q, its d, and its name.
-    fn each(&self, d: impl Fn(&dyn Fn(&[i128; 3]) -> Dd) -> Dd, mut ask: impl FnMut(&dyn Gauge<T, 3>, Dd, &str)) {
+    fn each(&self, d: impl Fn(&dyn Fn(&[i128; 3]) -> Dd) -> Dd, mut ask: impl FnMut(&dyn UnitSet<T, 3>, Dd, &str)) {
         let half = self.half;
         let as_round =
             |n: &[i128; 3]| (0..3).map(|i| exact(n[i] * i128::from(half[i]))).fold(Dd::ZERO, |s, x| s + x * x).sqrt();
@@ -106,10 +106,10 @@ impl<T: Real> Gauges<T> {
 }
 
 /// Puts the query with all kinds of Q.
-fn ask_all<T: Real>(set: &Lattice, gauges: &Gauges<T>, case: usize, plans: &mut Plans) {
+fn ask_all<T: Real>(set: &Lattice, units: &Units<T>, case: usize, plans: &mut Plans) {
     let d = |value: &dyn Fn(&[i128; 3]) -> Dd| truth(&set.points, value) * Dd::new(set.unit);
     ask(set, &Ball::<T>::unit(), d(&ball) + Dd::new(set.radius), &format!("{case} ball"), plans);
-    gauges.each(d, |q, d, name| ask(set, q, d, &format!("{case} {name}"), plans));
+    units.each(d, |q, d, name| ask(set, q, d, &format!("{case} {name}"), plans));
 }
 
 /// d / R is near 1.
@@ -118,7 +118,7 @@ fn compact_sets<T: Real>(seed: u64) {
     let mut plans = Plans::default();
     for case in cases(200) {
         let set = Lattice::new(symmetric(&mut dice, [40; 3]));
-        ask_all::<T>(&set, &Gauges::random(&mut dice), case, &mut plans);
+        ask_all::<T>(&set, &Units::random(&mut dice), case, &mut plans);
     }
     assert!(plans.0[..3].iter().all(|&n| n > 10), "{plans:?}");
 }
@@ -130,7 +130,7 @@ fn thin_sets<T: Real>(seed: u64, sizes: [f64; 2]) {
     for case in cases(200) {
         let size = dice.decade(sizes[0].log10(), sizes[1].log10());
         let set = Lattice::new(slab(&mut dice, size));
-        ask_all::<T>(&set, &Gauges::random(&mut dice), case, &mut plans);
+        ask_all::<T>(&set, &Units::random(&mut dice), case, &mut plans);
     }
     assert!(plans.0[..3].iter().all(|&n| n > 10), "{plans:?}");
 }
@@ -160,7 +160,7 @@ fn thin_f32() {
 fn a_ray_through_an_edge() {
     let corners = [[-23, 28, -13], [19, -16, -23], [23, 5, -19], [-22, -3, -16]];
     let set = Lattice::new(corners.into_iter().flat_map(|p: Point| [p, p.map(|x| -x)]).collect());
-    ask_all::<f32>(&set, &Gauges::new([4, 8, 3], 0.0625), 0, &mut Plans::default());
+    ask_all::<f32>(&set, &Units::new([4, 8, 3], 0.0625), 0, &mut Plans::default());
 }
 
 /// Somewhere around the origin: inside, outside, or at a vertex up to a few units.
@@ -187,7 +187,7 @@ fn sets_that_lean() {
         let points = placed(&mut dice, &points, 4);
         let lean = Lean::By(dice.pick(&[-1.0, 1.0]) * dice.decade(-1.5, 1.0));
         let set = Lattice { lean, ..Lattice::new(points) };
-        ask_all::<f64>(&set, &Gauges::random(&mut dice), case, &mut plans);
+        ask_all::<f64>(&set, &Units::random(&mut dice), case, &mut plans);
     }
     assert!(plans.0[..3].iter().all(|&n| n > 10), "{plans:?}");
 }
@@ -202,23 +202,22 @@ fn sets_that_lean_by_rounding() {
         let lean = Lean::Share(dice.pick(&[-44.0, 44.0]) * f64::from(f32::ROUNDOFF));
         let loose = dice.pick(&[0.0, 1e3]);
         let set = Lattice { lean, loose, ..Lattice::new(slab(&mut dice, size)) };
-        ask_all::<f32>(&set, &Gauges::random(&mut dice), case, &mut plans);
+        ask_all::<f32>(&set, &Units::random(&mut dice), case, &mut plans);
     }
 }
 
 /// Q's values and vertices are off as far as they may be.
 #[test]
-fn gauges_that_lean() {
+fn units_that_lean() {
     let mut dice = Dice::new(7);
     let mut plans = Plans::default();
     for case in cases(200) {
         let points = symmetric(&mut dice, [160, 160, 40]);
         let set = Lattice::new(placed(&mut dice, &points, 4));
-        let gauges = Gauges::<f64>::random(&mut dice);
-        let by = dice.pick(&[-1.0, 1.0]) * dice.decade(-3.0, -0.5) * gauges.unit;
+        let units = Units::<f64>::random(&mut dice);
+        let by = dice.pick(&[-1.0, 1.0]) * dice.decade(-3.0, -0.5) * units.unit;
         let d = |value: &dyn Fn(&[i128; 3]) -> Dd| truth(&set.points, value);
-        gauges
-            .each(d, |gauge, d, name| ask(&set, &Leaning { gauge, by }, d, &format!("{case} {by} {name}"), &mut plans));
+        units.each(d, |unit, d, name| ask(&set, &Leaning { unit, by }, d, &format!("{case} {by} {name}"), &mut plans));
     }
     assert!(plans.0[..3].iter().all(|&n| n > 10), "{plans:?}");
 }
@@ -234,7 +233,7 @@ fn floors<T: Real>(seed: u64, long: f64) {
         let e = dice.pick(&[-1.0, 1.0]) * dice.decade(-2.0, 0.5);
         let lean = dice.pick(&[Lean::None, Lean::ByAxis([e, e, 0.0]), Lean::ByAxis([e, e, e * 0.01])]);
         let set = Lattice { lean, by_axis: true, ..Lattice::new(points) };
-        ask_all::<T>(&set, &Gauges::random(&mut dice), case, &mut plans);
+        ask_all::<T>(&set, &Units::random(&mut dice), case, &mut plans);
         let set = Lattice { radius: dice.decade(0.0, 2.0).round(), ..set };
         let d = truth(&set.points, ball) + Dd::new(set.radius);
         ask(&set, &Ball::<T>::unit(), d, &format!("{case} under a ball"), &mut plans);
@@ -316,9 +315,9 @@ fn segments_from_a_corner<T: Real>(seed: u64, long: i64) {
         ask(&set, &q, d, &format!("{case} {end:?}"), &mut plans);
         let answer = Workspace::<T, 3, 4, 6>::new().solver().solve(&set, &q, &Options::default());
         proved += usize::from(answer.lower > T::zero());
-        let gauge = &q;
+        let unit = &q;
         let by = dice.pick(&[-1.0, 1.0]) * dice.decade(-3.0, -0.5);
-        ask(&set, &Leaning { gauge, by: T::of(by) }, d, &format!("{case} {end:?} by {by}"), &mut plans);
+        ask(&set, &Leaning { unit, by: T::of(by) }, d, &format!("{case} {end:?} by {by}"), &mut plans);
     }
     assert!(plans.0[1] > 100 && proved > 100, "{plans:?} {proved}");
 }
@@ -346,7 +345,7 @@ fn balls_in_boxes<T: Real>(seed: u64) {
         let d = Dd::new(set.radius) / exact(i128::from(square)).sqrt();
         let axes = half.map(|x| T::of(x as f64));
         let mut memory = Workspace::<T, 3, 64, 128>::new();
-        let cuboid = BoxGauge::new(Vector::from(axes)).unwrap();
+        let cuboid = UnitBox::new(Vector::from(axes)).unwrap();
         for relative in [0.1, 1e-3, 1e-6] {
             let options = Options { relative: T::of(relative), ..Options::default() };
             let answer = memory.solver().solve_by_expansion(&set, &cuboid, &options);
@@ -399,16 +398,16 @@ fn sets_in_planes<T: Real>(seed: u64, step: usize) {
             continue; // As far as the set tells, it is a line.
         }
         let set = Lattice { lean, ..Lattice::new(points) };
-        let mut gauges = Gauges::<T>::random(&mut dice);
+        let mut units = Units::<T>::random(&mut dice);
         if case % 2 == 0 {
             // Far from round.
-            let mut half = gauges.half;
+            let mut half = units.half;
             half[case / 2 % 3] *= 1000;
-            gauges = Gauges::new(half, gauges.unit);
+            units = Units::new(half, units.unit);
         }
         let mut memory = Workspace::<T, 3, 64, 128>::new();
         let options = Options { relative: T::zero(), ..Options::default() };
-        let mut ask = |q: &dyn Gauge<T, 3>, d: Dd, name: &str| {
+        let mut ask = |q: &dyn UnitSet<T, 3>, d: Dd, name: &str| {
             let answer = memory.solver().solve_in_span(&set, q, &options);
             let what = format!("{case} {name} {} {set:?}", answer.dimension);
             // (What a leaning set spans is known up to its error: it may be found to be space, where d is 0.)
@@ -421,17 +420,17 @@ fn sets_in_planes<T: Real>(seed: u64, step: usize) {
             holds(&answer, Dd::ZERO, "in space");
             assert_eq!(answer.outcome, Outcome::Degenerate, "{set:?}");
         }
-        gauges.each(|value| truth_in_plane(&set.points, value).unwrap(), ask);
+        units.each(|value| truth_in_plane(&set.points, value).unwrap(), ask);
     }
 }
 
 /// The plane is known up to the set's error, and what a long Q says of it even less.
 #[test]
-fn a_leaning_plane_under_a_long_gauge() {
+fn a_leaning_plane_under_a_long_unit() {
     let corners = [[0, 45, 27], [0, -38, -42], [0, 7, 49], [0, -59, -61], [0, -93, -107]];
     let points: Vec<Point> = corners.into_iter().flat_map(|p: Point| [p, p.map(|x| -x)]).collect();
     let set = Lattice { lean: Lean::By(-0.0216), ..Lattice::new(points) };
-    Gauges::<f32>::new([5000, 3, 3], 0.0625).each(
+    Units::<f32>::new([5000, 3, 3], 0.0625).each(
         |value| truth_in_plane(&set.points, value).unwrap(),
         |q, d, name| {
             let options = Options { relative: 0.0, ..Options::default() };
@@ -518,7 +517,7 @@ fn margins_by_direction() {
 
 /// An upper bound below zero, with an h_Q that is off.
 #[test]
-fn a_negative_height_over_a_gauge_that_leans() {
+fn a_negative_height_over_a_unit_that_leans() {
     let bounds = Bounds { support_error: 0.0, radius: 0.0, dimension: 3, unknown_extent: false };
     assert!(bounds.upper(-1.0, 0.0, 1.0, 0.25) >= -1.0 / 1.25);
     assert!(bounds.upper(1.0, 0.0, 1.0, 0.25) >= 1.0 / 0.75);
@@ -526,13 +525,13 @@ fn a_negative_height_over_a_gauge_that_leans() {
 
 /// Q says nothing about a direction, up to its error: the height there, which is 0, bounds nothing.
 #[test]
-fn a_gauge_without_extent_along_a_face() {
+fn a_unit_without_extent_along_a_face() {
     let corners: Vec<Point> = (0..8).map(|s| [[-3, 5][s & 1], [-7, 4][s >> 1 & 1], [-6, 0][s >> 2]]).collect();
     let set = Lattice::new(corners);
-    let flat = BoxGauge::new(Vector::from([1.0, 2.0, 0.0])).unwrap();
+    let flat = UnitBox::new(Vector::from([1.0, 2.0, 0.0])).unwrap();
     let mut memory = Workspace::<f64, 3, 64, 128>::new();
     for by in [0.0, 1e-9, -1e-9] {
-        let answer = memory.solver().solve(&set, &Leaning { gauge: &flat, by }, &Options::default());
+        let answer = memory.solver().solve(&set, &Leaning { unit: &flat, by }, &Options::default());
         assert!(answer.upper >= 2.0 && answer.upper < 2.1 && answer.lower <= 2.0, "{} {}", answer.lower, answer.upper);
     }
 }

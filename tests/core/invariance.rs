@@ -9,7 +9,7 @@ use crate::common;
 use common::dice::Dice;
 use common::memory::{Memory, Seen};
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Body, Depth, Options, Outcome, Real, Vector};
 
@@ -189,7 +189,7 @@ fn general_scales<T: Real, const N: usize>(powers: &[i32]) {
         let g: [f64; N] = std::array::from_fn(|_| single(dice.range(0.5, 2.0)));
         let t: [f64; N] = std::array::from_fn(|_| single(dice.range(-0.3, 0.3)));
         let which = dice.below(2);
-        let run = |s: f64, q: f64, gauge: usize| {
+        let run = |s: f64, q: f64, unit: usize| {
             let v = |x: &[f64; N], s: f64| Vector::<T, N>::from(x.map(|x| T::of(x * s)));
             let inner: Box<dyn Support<T, N>> = if which == 0 {
                 Box::new(BoxShape::new(v(&h, s)).unwrap())
@@ -197,33 +197,33 @@ fn general_scales<T: Real, const N: usize>(powers: &[i32]) {
                 Box::new(Ellipsoid::new(v(&h, s)).unwrap())
             };
             let set = Rigid::new(&*inner, SMatrix::identity(), v(&t, s)).unwrap();
-            let gauge: Box<dyn Gauge<T, N>> = match gauge {
+            let unit: Box<dyn UnitSet<T, N>> = match unit {
                 0 => Box::new(Ball::new(T::of(q)).unwrap()),
-                1 => Box::new(BoxGauge::new(v(&g, q)).unwrap()),
+                1 => Box::new(UnitBox::new(v(&g, q)).unwrap()),
                 2 => Box::new(CrossPolytope::new(v(&g, q)).unwrap()),
                 3 => Box::new(Segment::new(v(&g, q)).unwrap()),
-                _ => Box::new(EllipsoidGauge::new(v(&g, q), SMatrix::identity()).unwrap()),
+                _ => Box::new(UnitEllipsoid::new(v(&g, q), SMatrix::identity()).unwrap()),
             };
             let mut memory = Memory::new::<T, N>(64, 1024);
-            let r = memory.solver::<T, N>().solve(&set, &*gauge, &options);
+            let r = memory.solver::<T, N>().solve(&set, &*unit, &options);
             (r.lower, r.upper, r.iterations, r.outcome)
         };
-        for gauge in 0..5 {
-            let one = run(1.0, 1.0, gauge);
+        for unit in 0..5 {
+            let one = run(1.0, 1.0, unit);
             for &k in powers {
                 let s = 2f64.powi(k);
-                assert_eq!(run(s, s, gauge), one, "both, N = {N}, gauge {gauge}, 2^{k}");
-                let set = run(s, 1.0, gauge);
+                assert_eq!(run(s, s, unit), one, "both, N = {N}, unit set {unit}, 2^{k}");
+                let set = run(s, 1.0, unit);
                 assert_eq!(
                     (set.0 / T::of(s), set.1 / T::of(s), set.2),
                     (one.0, one.1, one.2),
-                    "A, N = {N}, gauge {gauge}, 2^{k}"
+                    "A, N = {N}, unit set {unit}, 2^{k}"
                 );
-                let q = run(1.0, s, gauge);
+                let q = run(1.0, s, unit);
                 assert_eq!(
                     (q.0 * T::of(s), q.1 * T::of(s), q.2),
                     (one.0, one.1, one.2),
-                    "Q, N = {N}, gauge {gauge}, 2^{k}"
+                    "Q, N = {N}, unit set {unit}, 2^{k}"
                 );
             }
         }

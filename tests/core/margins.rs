@@ -4,7 +4,7 @@ use crate::common;
 
 use common::dice::Dice;
 use nalgebra::{Matrix3, Vector3};
-use qdist::qset::BoxGauge;
+use qdist::qset::UnitBox;
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Failure, Points, Sphere, Support};
 use qdist::{Body, Depth, Options, Outcome, Real, Vector, Workspace};
 use std::cell::Cell;
@@ -168,9 +168,9 @@ fn octahedra<T: Real, const N: usize>(seed: u64, widest: f64) {
     let mut memory = Workspace::<T, N, 64, 512>::new();
     for k in 0..40 {
         let axes: [T; N] = std::array::from_fn(|_| T::of(dice.range(0.5, 2.0)));
-        let gauge: [T; N] = std::array::from_fn(|_| T::of(dice.range(0.5, 3.0)));
-        let q = BoxGauge::new(Vector::from(gauge)).unwrap();
-        let truth = 1.0 / (0..N).map(|i| gauge[i].to_f64() / axes[i].to_f64()).sum::<f64>();
+        let unit: [T; N] = std::array::from_fn(|_| T::of(dice.range(0.5, 3.0)));
+        let q = UnitBox::new(Vector::from(unit)).unwrap();
+        let truth = 1.0 / (0..N).map(|i| unit[i].to_f64() / axes[i].to_f64()).sum::<f64>();
         let extent = T::of(10f64.powf(dice.range(0.5, if k % 2 == 0 { 8.0 } else { 20.0 })));
         // Every third states its error by itself: then the bracket may be wide, and nothing else.
         let error = (k % 3 == 2).then(|| T::of(10f64.powf(dice.range(-3.0, 15.0))));
@@ -179,7 +179,7 @@ fn octahedra<T: Real, const N: usize>(seed: u64, widest: f64) {
         let (lower, upper) = (answer.lower.to_f64(), answer.upper.to_f64());
         assert!(lower <= truth * (1.0 + 1e-14) && truth * (1.0 - 1e-14) <= upper, "{truth} {lower} {upper}");
         let points = answer.witness.corners.iter().flat_map(|c| c.vertex.point.iter().chain(c.vertex.witness.iter()));
-        let all = points.chain(answer.direction.iter()).chain(answer.support.iter()).chain([&answer.gauge]);
+        let all = points.chain(answer.direction.iter()).chain(answer.support.iter()).chain([&answer.unit]);
         assert!(all.copied().all(|x| x.finite()) && answer.direction.norm() > T::of(0.5), "{:?}", answer.direction);
         assert_eq!(answer.support_calls, set.asked.get());
         if error.is_none() {

@@ -6,7 +6,7 @@ use crate::common;
 use common::dice::Dice;
 use common::memory::{Memory, Seen, broken_promise};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, UnitSetFn, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Support};
 use qdist::{Answer, Options, Outcome, Plan, Real, Vector};
 use qdist::{Layout, WorkspaceError, place};
@@ -122,13 +122,13 @@ fn a2() -> f64 {
 fn solve<T: Real, const N: usize>(
     what: &str,
     set: &dyn Support<T, N>,
-    gauge: &dyn Gauge<T, N>,
+    unit: &dyn UnitSet<T, N>,
     options: &Options<T, N>,
     (vertices, facets): (usize, usize),
     d: f64,
 ) -> Answer<T, N> {
     let mut memory = Memory::new::<T, N>(vertices, facets);
-    let answer = memory.solver::<T, N>().solve(set, gauge, options);
+    let answer = memory.solver::<T, N>().solve(set, unit, options);
     check(what, &answer, options, (vertices, facets), d);
     answer
 }
@@ -172,8 +172,8 @@ fn choice<T: Real, const N: usize>() {
     let cube = BoxShape::new(vector::<T, N>([1.0; N])).unwrap();
     let corner: [T; N] = std::array::from_fn(|i| T::of(if i == 0 { 1.0 } else { 0.5 }));
     let corners = [corner, corner.map(|x| -x)];
-    let polytopal: [(&dyn Gauge<T, N>, f64); 4] = [
-        (&BoxGauge::new(ones).unwrap(), 1.0),
+    let polytopal: [(&dyn UnitSet<T, N>, f64); 4] = [
+        (&UnitBox::new(ones).unwrap(), 1.0),
         (&CrossPolytope::new(ones).unwrap(), 1.0),
         (&Segment::new(Vector::from(corner)).unwrap(), 1.0),
         (&Vertices::new(&corners).unwrap(), 1.0),
@@ -186,18 +186,18 @@ fn choice<T: Real, const N: usize>() {
             assert_eq!(answer.outcome, Outcome::Converged);
         }
     }
-    let cubic = BoxGauge::new(ones).unwrap();
+    let cubic = UnitBox::new(ones).unwrap();
     assert_eq!(solve("cube", &cube, &cubic, &o, (N + 1, 2 * N), 1.0).plan, Plan::Rays);
     if N == 6 {
         // Round sets take thousands of facets there.
         let answer = solve("ball", &Round::aligned([1.0; N]), &cubic, &options(1e-4, 0), large, 6f64.sqrt().recip());
         assert_eq!((answer.plan, answer.outcome), (Plan::Rays, Outcome::Converged));
     }
-    let stretched = EllipsoidGauge::new(vector::<T, N>([0.5; N]), SMatrix::identity()).unwrap();
+    let stretched = UnitEllipsoid::new(vector::<T, N>([0.5; N]), SMatrix::identity()).unwrap();
     let unknown =
-        GaugeFn::new(|u: &Vector<T, N>| Ok(u.iter().fold(T::zero(), |s, x| s + x.abs())), T::ROUNDOFF * T::count(9))
+        UnitSetFn::new(|u: &Vector<T, N>| Ok(u.iter().fold(T::zero(), |s, x| s + x.abs())), T::ROUNDOFF * T::count(9))
             .unwrap();
-    for (q, d) in [(&Ball::unit() as &dyn Gauge<T, N>, 1.0), (&stretched, 2.0), (&unknown, 1.0)] {
+    for (q, d) in [(&Ball::unit() as &dyn UnitSet<T, N>, 1.0), (&stretched, 2.0), (&unknown, 1.0)] {
         let answer = solve("cube", &cube, q, &o, large, d);
         assert_eq!((answer.plan, answer.outcome), (Plan::Expansion, Outcome::Converged), "{:?}", Seen::from(&answer));
     }
@@ -244,10 +244,10 @@ every_type_and_dimension!(the_plan_is_chosen_by_the_query, choice);
 fn table_one<T: Real>(sizes: &[(usize, f64)]) {
     let mut semi = [1.0; 6];
     semi[0] = 2.0;
-    let ellipsoid = EllipsoidGauge::new(vector::<T, 6>(semi), SMatrix::identity()).unwrap();
+    let ellipsoid = UnitEllipsoid::new(vector::<T, 6>(semi), SMatrix::identity()).unwrap();
     for &(facets, relative) in sizes {
         let size = ((facets / 4).max(18), facets);
-        for (what, q, d) in [("a1", &Ball::unit() as &dyn Gauge<T, 6>, a1()), ("a2", &ellipsoid, a2())] {
+        for (what, q, d) in [("a1", &Ball::unit() as &dyn UnitSet<T, 6>, a1()), ("a2", &ellipsoid, a2())] {
             let run = |tells: bool| solve(what, &TwoFingers { tells }, q, &options(relative, 2_000_000), size, d);
             let (with, without) = (run(true), run(false));
             for answer in [&with, &without] {
@@ -300,7 +300,7 @@ fn turned_sets<T: Real, const N: usize>() {
             assert_eq!(answer.outcome, Outcome::Converged, "{tell} {size:?} {:?}", Seen::from(&answer));
             // Seen by Q with the same axes: R D B in units of R G B.
             let g: [f64; N] = std::array::from_fn(|i| exact::<T>(0.4 + 0.3 * i as f64));
-            let q = EllipsoidGauge::new(vector::<T, N>(g), matrix).unwrap();
+            let q = UnitEllipsoid::new(vector::<T, N>(g), matrix).unwrap();
             let tell = format!("turned ellipsoid in ellipsoid {round}");
             let d = least((0..N).map(|i| semi[i] / g[i]));
             let o = options::<T, N>(relative.max(0.02), 0);
@@ -364,7 +364,7 @@ every_type_and_dimension!(balls_moved_almost_away, moved_balls);
 
 /// Sets by which all plans are met, with their d.
 #[allow(clippy::type_complexity)]
-fn problems<T: Real, const N: usize>() -> Vec<(&'static str, Box<dyn Support<T, N>>, Box<dyn Gauge<T, N>>, f64)> {
+fn problems<T: Real, const N: usize>() -> Vec<(&'static str, Box<dyn Support<T, N>>, Box<dyn UnitSet<T, N>>, f64)> {
     let mut semi = [1.0; N];
     semi[N - 1] = 0.5;
     let turn = Dice::new(53).rotation::<N>().map(|row| row.map(exact::<T>));
@@ -385,17 +385,17 @@ fn problems<T: Real, const N: usize>() -> Vec<(&'static str, Box<dyn Support<T, 
     vec![
         ("round", Box::new(round.clone()), Box::new(Ball::unit()), d),
         ("box", Box::new(boxed), Box::new(Ball::unit()), least((0..N).map(|i| 1.0 / inverse.row(i).norm()))),
-        ("box in box", Box::new(boxed), Box::new(BoxGauge::new(vector::<T, N>([0.5; N])).unwrap()), least(rays)),
+        ("box in box", Box::new(boxed), Box::new(UnitBox::new(vector::<T, N>([0.5; N])).unwrap()), least(rays)),
         ("grown", Box::new(grown), Box::new(Ball::unit()), 0.125),
         ("aside", Box::new(beside), Box::new(Ball::unit()), -0.125),
-        ("aside, box", Box::new(beside), Box::new(BoxGauge::new(vector::<T, N>([0.5; N])).unwrap()), -0.125),
+        ("aside, box", Box::new(beside), Box::new(UnitBox::new(vector::<T, N>([0.5; N])).unwrap()), -0.125),
     ]
 }
 
 /// Iterations one by one, and the same as interrupts: true, never worse, and the same.
 fn budgets<T: Real, const N: usize>() {
     let mut dice = Dice::new(54);
-    for (name, set, gauge, d) in problems::<T, N>() {
+    for (name, set, unit, d) in problems::<T, N>() {
         for size in [(3 * N, 4 * N), (40, 60), (200, 800)] {
             let mut best = (f64::MIN, f64::MAX);
             let mut limit = 0;
@@ -403,7 +403,7 @@ fn budgets<T: Real, const N: usize>() {
                 limit += 1 + dice.below(1 + limit as usize / 2) as u32;
                 let relative = 1e-4;
                 let o = options::<T, N>(relative, limit);
-                let answer = solve(name, &*set, &*gauge, &o, size, d);
+                let answer = solve(name, &*set, &*unit, &o, size, d);
                 let seen = Seen::from(&answer);
                 let rounding = 4096.0 * T::ROUNDOFF.to_f64() * N as f64;
                 assert!(
@@ -418,7 +418,7 @@ fn budgets<T: Real, const N: usize>() {
                 };
                 let mut memory = Memory::new::<T, N>(size.0, size.1);
                 let free = options::<T, N>(relative, 0);
-                let cut = memory.solver::<T, N>().solve_until(&*set, &*gauge, &free, Some(&stop));
+                let cut = memory.solver::<T, N>().solve_until(&*set, &*unit, &free, Some(&stop));
                 check(name, &cut, &free, size, d);
                 let wanted = if answer.outcome == Outcome::Iterations { Outcome::Interrupted } else { answer.outcome };
                 assert_eq!(
@@ -439,7 +439,7 @@ every_type_and_dimension!(budgets_and_interrupts_of_any_length, budgets);
 /// Random capacities, tolerances, thresholds and limits; what is concluded is true.
 fn odds<T: Real, const N: usize>() {
     let mut dice = Dice::new(55);
-    for (name, set, gauge, d) in problems::<T, N>() {
+    for (name, set, unit, d) in problems::<T, N>() {
         for _ in 0..40 {
             let size = (N + 1 + dice.below(80), 2 * N + dice.below(300));
             let mut o = options::<T, N>(dice.decade(-5.0, 0.0), 1 + dice.decade(0.0, 3.3) as u32);
@@ -447,7 +447,7 @@ fn odds<T: Real, const N: usize>() {
                 let near = dice.pick(&[0.0, 1e-12, 1e-6, 1e-3, 0.05, 0.5, 3.0]) * dice.pick(&[1.0, -1.0]);
                 o.threshold = Some(T::of(d + near));
             }
-            let answer = solve(name, &*set, &*gauge, &o, size, d);
+            let answer = solve(name, &*set, &*unit, &o, size, d);
             let Some(threshold) = o.threshold.map(T::to_f64) else {
                 assert!(!matches!(answer.outcome, Outcome::Above | Outcome::Below));
                 continue;
@@ -544,11 +544,11 @@ fn with_body<T: Real, const N: usize, R>(
 }
 
 /// A set of points as the vertices of Q, in one of the ways to say so.
-fn with_gauge<T: Real, const N: usize, R>(
+fn with_unit<T: Real, const N: usize, R>(
     kind: usize,
     dice: &mut Dice,
     scale: f64,
-    f: impl FnOnce(&dyn Gauge<T, N>, &[Vector<f64, N>], &'static str) -> R,
+    f: impl FnOnce(&dyn UnitSet<T, N>, &[Vector<f64, N>], &'static str) -> R,
 ) -> R {
     let mut sizes: [f64; N] = std::array::from_fn(|_| exact::<T>(scale * dice.range(0.5, 2.0)));
     let axis = |i: usize, x: f64| Vector::<f64, N>::from_fn(|j, _| if i == j { x } else { 0.0 });
@@ -558,7 +558,7 @@ fn with_gauge<T: Real, const N: usize, R>(
     match kind {
         0 | 1 => {
             let corner = |k: usize| Vector::from_fn(|i, _| if k >> i & 1 == 1 { -sizes[i] } else { sizes[i] });
-            f(&BoxGauge::new(vector(sizes)).unwrap(), &(0..1 << N).map(corner).collect::<Vec<_>>(), "box")
+            f(&UnitBox::new(vector(sizes)).unwrap(), &(0..1 << N).map(corner).collect::<Vec<_>>(), "box")
         }
         2 | 3 => {
             let ends = (0..N).flat_map(|i| [axis(i, sizes[i]), axis(i, -sizes[i])]);
@@ -602,7 +602,7 @@ fn rays<T: Real, const N: usize>() {
         let shift = dice.direction::<N>();
         let at = Vector::<f64, N>::from_fn(|i, _| exact::<T>(scale * 0.15 / (N as f64).sqrt() * shift[i]));
         let unit = scale * dice.pick(&[1.0, 1.0, 1e-6, 1e-3, 1e3, 1e6]);
-        with_gauge::<T, N, _>(round % 9, &mut dice, unit, |q, ends, name| {
+        with_unit::<T, N, _>(round % 9, &mut dice, unit, |q, ends, name| {
             let d = least(ends.iter().map(|v| crossing(&body, &m, &at, v)));
             let o = Options { relative: T::RELATIVE_TOLERANCE, ..Options::default() };
             let tell = format!("{name} in body {}, round {round}, scale {scale:e}, unit {unit:e}", round % 4);
@@ -653,7 +653,7 @@ fn beside<T: Real, const N: usize>() {
         let set = Rigid::new(cuboid, SMatrix::identity(), vector::<T, N>(at)).unwrap();
         let gap = at[0] - h[0];
         let unit = dice.pick(&[1.0, 1e-6, 1e6]);
-        with_gauge::<T, N, _>(round % 9, &mut dice, unit, |q, ends, name| {
+        with_unit::<T, N, _>(round % 9, &mut dice, unit, |q, ends, name| {
             // (N = 2: the flat Q may be the point 0.)
             let low = |v: &Vector<f64, N>| {
                 least((0..N).map(|i| match v[i] {
@@ -693,7 +693,7 @@ fn flat<T: Real, const N: usize>() {
                 |i, j| if round < 20 { T::count(usize::from(i == j)) } else { T::of(turn[i][j]) },
             );
         let set = Linear::new(BoxShape::new(vector::<T, N>(h)).unwrap(), matrix, Vector::zeros()).unwrap();
-        with_gauge::<T, N, _>(round % 9, &mut dice, 1.0, |q, ends, name| {
+        with_unit::<T, N, _>(round % 9, &mut dice, 1.0, |q, ends, name| {
             let inside =
                 |v: &Vector<f64, N>| least((0..N).map(|i| if v[i] == 0.0 { f64::MAX } else { h[i] / v[i].abs() }));
             let d = if round < 20 { least(ends.iter().map(inside)) } else { 0.0 };
@@ -718,11 +718,11 @@ fn agreement<const N: usize>() {
     for round in 0..27 {
         let points: Vec<[f64; N]> = (0..2 * N + 2 + dice.below(20)).map(|_| dice.direction::<N>()).collect();
         let set = Points::new(&points).unwrap();
-        with_gauge::<f64, N, _>(round % 9, &mut dice, 1.0, |q, _, name| {
+        with_unit::<f64, N, _>(round % 9, &mut dice, 1.0, |q, _, name| {
             let o = options::<f64, N>(1e-6, 0);
             // In the least memory there are only rays, but where the first simplex is enough.
             let by_rays = Memory::new::<f64, N>(N + 1, 2 * N).solver::<f64, N>().solve(&set, q, &o);
-            let silent = GaugeFn::new(|u: &Vector<f64, N>| q.value(u), q.error()).unwrap();
+            let silent = UnitSetFn::new(|u: &Vector<f64, N>| q.value(u), q.error()).unwrap();
             let few = options::<f64, N>(1e-6, 600);
             let expanded = memory.solver::<f64, N>().solve(&set, &silent, &few);
             let (a, b) = (Seen::from(&by_rays), Seen::from(&expanded));
@@ -779,11 +779,11 @@ fn derivatives_of_closed_forms() {
         assert!((by - f64::from(axis == 1)).abs() < 1e-6, "{axis} {by}");
     }
     // In units of Q: rays.
-    let q = BoxGauge::new(Vector::from([2.0; 4])).unwrap();
+    let q = UnitBox::new(Vector::from([2.0; 4])).unwrap();
     let answer = solve("moved box", &moved, &q, &options(1e-9, 0), size, 0.35);
     let by = answer.derivative(|_| Vector::from([0.0, 1.0, 0.0, 0.0]));
     assert!((by - 0.5).abs() < 1e-6, "{by}");
-    assert!((answer.direction.dot(&answer.support) / answer.gauge - 0.35).abs() < 1e-9);
+    assert!((answer.direction.dot(&answer.support) / answer.unit - 0.35).abs() < 1e-9);
 }
 
 /// A moved ellipsoid, by central differences; the plan is expansion, then cones.

@@ -8,7 +8,7 @@ use common::exact::pair_value;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Options, Outcome, Real, Vector};
 
@@ -104,10 +104,10 @@ fn a_flattened_set_with_a_small_ball_in_four_dimensions() {
     general(&set, &Segment::new(Vector::from([1.0, 0.0, 1.25, 1.0])).unwrap());
 }
 
-fn general<const N: usize>(set: &dyn Support<f64, N>, gauge: &dyn Gauge<f64, N>) -> Seen {
+fn general<const N: usize>(set: &dyn Support<f64, N>, unit: &dyn UnitSet<f64, N>) -> Seen {
     let options = brisk();
     let mut memory = Memory::new::<f64, N>(128, 1024);
-    let seen = Seen::from(&memory.solver::<f64, N>().solve(set, gauge, &options));
+    let seen = Seen::from(&memory.solver::<f64, N>().solve(set, unit, &options));
     assert_eq!(broken_promise(&seen, &options, 128, 1024), None, "{seen:?}");
     seen
 }
@@ -232,7 +232,7 @@ fn extent_error_and_radius_that_are_no_numbers() {
                 Seen::from(&memory.solver::<f64, 3>().solve(&set, &Ball::unit(), &brisk())),
                 Seen::from(&memory.solver::<f64, 3>().solve(
                     &set,
-                    &BoxGauge::new(Vector::from([1.0; 3])).unwrap(),
+                    &UnitBox::new(Vector::from([1.0; 3])).unwrap(),
                     &brisk(),
                 )),
             ] {
@@ -245,10 +245,10 @@ fn extent_error_and_radius_that_are_no_numbers() {
 
 /// Outside, d is minus the distance for every Q; the direction must be chosen by height, not by h_A/h_Q.
 #[test]
-fn a_long_gauge_outside_a_box() {
+fn a_long_unit_outside_a_box() {
     let cube = BoxShape::new(Vector::from([1.0, 1.0])).unwrap();
     let beside = Rigid::new(cube, SMatrix::identity(), Vector::from([3.0, 3.0])).unwrap();
-    let seen = general(&beside, &BoxGauge::new(Vector::from([100.0, 0.01])).unwrap());
+    let seen = general(&beside, &UnitBox::new(Vector::from([100.0, 0.01])).unwrap());
     let d = -(8f64.sqrt());
     assert!(seen.lower <= d && d <= seen.upper + 1e-15, "{seen:?}");
     assert!(seen.upper - seen.lower <= 1e-6 * 2.9, "{seen:?}");
@@ -308,7 +308,7 @@ impl Support<f64, 6> for TwoFingers {
 /// cone in work was taken for that of A, and its lower bound for one of d (0.2349 for 0.2236, `Converged`).
 #[test]
 fn an_iteration_limit_in_the_middle_of_a_cone() {
-    let q = EllipsoidGauge::new(Vector::from([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]), SMatrix::identity()).unwrap();
+    let q = UnitEllipsoid::new(Vector::from([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]), SMatrix::identity()).unwrap();
     let d = 0.41 / (4.0 * 0.1681f64 + 1.69 + 1.0).sqrt();
     for size in [(18, 24), (20, 30), (24, 40)] {
         let mut best = f64::MIN;

@@ -10,7 +10,7 @@ use common::dice::Dice;
 use common::hull::{ExactHull, signed_depth};
 use common::memory::Memory;
 use nalgebra::{Matrix3, Vector3};
-use qdist::qset::{Ball, BoxGauge, Gauge};
+use qdist::qset::{Ball, UnitBox, UnitSet};
 use qdist::support::{BoxShape, Difference, Failure, Margin, Rigid, Scaled, Sum, Support};
 use qdist::{Body, NOT_FINITE, Options, Outcome, Real, Tracker, Vector};
 
@@ -326,13 +326,13 @@ fn what_cannot_be_is_refused() {
             for (i, set) in sets.into_iter().enumerate() {
                 // Where only the point counts, a witness is not asked for; where a part's extent is no length, that of the whole is not known.
                 let hidden = lie == Lie::Witness && i > 1 || lie == Lie::Extent && matches!(i, 2..=4);
-                for gauge in
-                    [&Ball::unit() as &dyn Gauge<f64, 3>, &BoxGauge::new(Vector::from([1.0, 2.0, 3.0])).unwrap()]
+                for unit in
+                    [&Ball::unit() as &dyn UnitSet<f64, 3>, &UnitBox::new(Vector::from([1.0, 2.0, 3.0])).unwrap()]
                 {
-                    let r = memory.solver::<f64, 3>().solve(set, gauge, &options);
+                    let r = memory.solver::<f64, 3>().solve(set, unit, &options);
                     let refused = (r.outcome, r.failure) == (Outcome::SupportFailed, NOT_FINITE);
                     assert!(refused || hidden, "{what}, set {i}: {:?} [{}, {}]", r.outcome, r.lower, r.upper);
-                    let numbers = [r.lower, r.upper, r.gauge].into_iter().chain(r.direction.iter().copied());
+                    let numbers = [r.lower, r.upper, r.unit].into_iter().chain(r.direction.iter().copied());
                     let mut points =
                         r.witness.corners.iter().flat_map(|c| c.vertex.point.iter().chain(c.vertex.witness.iter()));
                     assert!(numbers.chain(r.support.iter().copied()).all(f64::is_finite), "{what}, set {i}");
@@ -344,9 +344,9 @@ fn what_cannot_be_is_refused() {
 }
 
 #[test]
-fn gauges_that_cannot_be_are_refused() {
+fn units_that_cannot_be_are_refused() {
     struct Odd(Lie, f64);
-    impl Gauge<f64, 3> for Odd {
+    impl UnitSet<f64, 3> for Odd {
         fn value(&self, u: &Vector<f64, 3>) -> Result<f64, Failure> {
             Ok(if self.0 == Lie::Point && u[0] > 0.9 { self.1 } else { u.norm() })
         }

@@ -5,7 +5,7 @@ use crate::common;
 use common::dice::Dice;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Points, Rigid, Support};
 use qdist::{Options, Outcome, Plan, Real, Tracker, Vector};
 
@@ -28,10 +28,10 @@ fn ticks<T: Real, const N: usize>() {
         let mut memory = Memory::new::<T, N>(64, 512);
         let step = 10f64.powi(-(round % 5) - 1) * 0.1;
         let radius = T::of(0.75);
-        let gauge: Box<dyn Gauge<T, N>> = match round % 3 {
+        let unit: Box<dyn UnitSet<T, N>> = match round % 3 {
             0 => Box::new(Ball::new(radius).unwrap()),
-            1 => Box::new(BoxGauge::new(v::<T, N>([0.75; N])).unwrap()),
-            _ => Box::new(EllipsoidGauge::new(v::<T, N>([0.75; N]), SMatrix::identity()).unwrap()),
+            1 => Box::new(UnitBox::new(v::<T, N>([0.75; N])).unwrap()),
+            _ => Box::new(UnitEllipsoid::new(v::<T, N>([0.75; N]), SMatrix::identity()).unwrap()),
         };
         for tick in 0..40 {
             let old = at;
@@ -45,9 +45,9 @@ fn ticks<T: Real, const N: usize>() {
             let limit = if tick == 0 { 0 } else { 1 + dice.below(30) as u32 };
             let options = Options { max_iterations: limit, relative: T::of(1e-3), ..Options::default() };
             let before = tracker;
-            let lower = before.lower_after(T::of(moved), &*gauge).to_f64();
+            let lower = before.lower_after(T::of(moved), &*unit).to_f64();
             assert!(lower <= d * (1.0 + 8.0 * u), "{lower} {d}");
-            let a = memory.solver::<T, N>().solve_warm(&mut tracker, &set, &*gauge, T::of(moved), &options, None);
+            let a = memory.solver::<T, N>().solve_warm(&mut tracker, &set, &*unit, T::of(moved), &options, None);
             let s = Seen::from(&a);
             assert_eq!(broken_promise(&s, &options, 64, 512), None, "{s:?}");
             assert!(s.lower <= d * (1.0 + 8.0 * u) && d * (1.0 - 8.0 * u) <= s.upper, "{round} {tick} {d} {s:?}");
@@ -135,7 +135,7 @@ fn flat<const N: usize, const K: usize>() {
         let set = Embedded { inner: BoxShape::new(v::<f64, K>(half)).unwrap(), basis };
         let mut memory = Memory::new::<f64, N>(128, 1024);
         let options = brisk();
-        let mut check = |what: &str, q: &dyn Gauge<f64, N>, d: f64| {
+        let mut check = |what: &str, q: &dyn UnitSet<f64, N>, d: f64| {
             let a = memory.solver::<f64, N>().solve_in_span(&set, q, &options);
             let s = Seen::from(&a);
             assert_eq!((a.outcome, a.dimension), (Outcome::Converged, K), "{what} {N} {K} {turned} {s:?}");
@@ -146,7 +146,7 @@ fn flat<const N: usize, const K: usize>() {
         };
         check("ball", &Ball::new(0.5).unwrap(), 2.0 * least);
         if !turned {
-            check("box", &BoxGauge::new(v::<f64, N>([0.5; N])).unwrap(), 2.0 * least);
+            check("box", &UnitBox::new(v::<f64, N>([0.5; N])).unwrap(), 2.0 * least);
             check("cross", &CrossPolytope::new(v::<f64, N>([0.5; N])).unwrap(), 2.0 * least);
         }
         // Along a diagonal of the box.
@@ -182,9 +182,9 @@ fn a_line_that_ends_at_the_origin() {
         let far = axis * dice.decade(-3.0, 3.0);
         let ends = [[0.0; 6], far.into()];
         let line = Points::new(&ends).unwrap();
-        let q: Box<dyn Gauge<f64, 6>> = match round % 2 {
+        let q: Box<dyn UnitSet<f64, 6>> = match round % 2 {
             0 => Box::new(Ball::new(0.5).unwrap()),
-            _ => Box::new(BoxGauge::new(v([0.5; 6])).unwrap()),
+            _ => Box::new(UnitBox::new(v([0.5; 6])).unwrap()),
         };
         let a = memory.solver::<f64, 6>().solve_in_span(&line, q.as_ref(), &brisk());
         assert_eq!((a.outcome, a.dimension), (Outcome::Touching, 1), "{far} {:?}", Seen::from(&a));
@@ -217,7 +217,7 @@ fn what_spans_the_space_is_solved_there() {
 /// A cube whose fifth corner is what a careless caller made of it.
 struct Corners(f64);
 
-impl Gauge<f64, 3> for Corners {
+impl UnitSet<f64, 3> for Corners {
     fn value(&self, u: &Vector<f64, 3>) -> Result<f64, Failure> {
         Ok(u.abs().sum())
     }
@@ -281,14 +281,14 @@ fn a_subspace_found_from_a_thin_set_is_not_taken_for_exact() {
 
 /// The change of d as the set moves along x, by the envelope theorem and by differences.
 #[test]
-fn the_gradient_holds_for_any_gauge_and_for_warm_answers() {
+fn the_gradient_holds_for_any_unit_and_for_warm_answers() {
     let body = Ellipsoid::new(v::<f64, 3>([1.0, 1.5, 2.0])).unwrap();
     let at = |x: f64| Rigid::new(body, SMatrix::identity(), v::<f64, 3>([x, 0.2, -0.1])).unwrap();
-    let gauge = EllipsoidGauge::new(v::<f64, 3>([0.5, 1.0, 0.7]), SMatrix::identity()).unwrap();
+    let unit = UnitEllipsoid::new(v::<f64, 3>([0.5, 1.0, 0.7]), SMatrix::identity()).unwrap();
     let options = Options { relative: 1e-9, ..Options::default() };
     let mut memory = Memory::new::<f64, 3>(2048, 4096);
     let along = |_: &Vector<f64, 3>| v::<f64, 3>([1.0, 0.0, 0.0]);
-    for q in [&gauge as &dyn Gauge<f64, 3>, &Ball::unit()] {
+    for q in [&unit as &dyn UnitSet<f64, 3>, &Ball::unit()] {
         let h = 1e-3;
         let mut d = |x: f64| memory.solver::<f64, 3>().solve(&at(x), q, &options).upper;
         let slope = (d(0.3 + h) - d(0.3 - h)) / (2.0 * h);

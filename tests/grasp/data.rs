@@ -107,7 +107,7 @@ fn norm(r: &Value) -> Norm {
 }
 
 /// h_Q at the reference's own direction.
-fn gauge(q: &Value, u: &[f64]) -> f64 {
+fn unit(q: &Value, u: &[f64]) -> f64 {
     let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let scaled = |key: &str| -> Vec<f64> { numbers(&q[key]).iter().zip(u).map(|(a, x)| (a * x).abs()).collect() };
     match q["type"].as_str().unwrap() {
@@ -135,7 +135,7 @@ fn values<T: Real>(tolerance: f64) {
             let primitives = if is_active { &grasp.active } else { &grasp.passive };
             let set = WrenchSet::new(primitives, norm(r));
             let u = vector::<T, 6>(direction(r).into());
-            let (found, d) = (set.value(&u).to_f64() / gauge(&r["Q"], &local_direction(r)), r["d"].as_f64().unwrap());
+            let (found, d) = (set.value(&u).to_f64() / unit(&r["Q"], &local_direction(r)), r["d"].as_f64().unwrap());
             let kind = r["Q"]["type"].as_str().unwrap();
             assert!((found - d).abs() <= tolerance * d, "{} {} {:?} {kind}: {found} {d}", grasp.id, r["set"], norm(r));
             if d > 0.0 {

@@ -7,7 +7,7 @@ use common::dice::Dice;
 use grasp_common::{contact_map, radii, socp, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, Friction, HandContact, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
-use qdist::qset::{Ball, CrossPolytope, EllipsoidGauge, Gauge};
+use qdist::qset::{Ball, CrossPolytope, UnitEllipsoid, UnitSet};
 use qdist::support::{Failure, Support};
 use qdist::{Options, Outcome, Real, Vector, Workspace};
 
@@ -74,11 +74,11 @@ fn two_soft_fingers<T: Real>(seed: u64) {
         let mut memory = vec![Primitive::empty(); contacts.len()];
         let set = WrenchSet::new(wrenches(&contacts, &frame, &mut memory).unwrap(), norm);
         let wide = Wide::new(&contacts, &frame, norm);
-        let round = |semi: [f64; 6]| EllipsoidGauge::new(Vector::from(semi), SMatrix::identity()).unwrap();
-        let stretched = EllipsoidGauge::new(vector::<T, 6>(semi), SMatrix::identity()).unwrap();
-        let gauges: [(&dyn Gauge<T, 6>, EllipsoidGauge<f64, 6>); 2] =
+        let round = |semi: [f64; 6]| UnitEllipsoid::new(Vector::from(semi), SMatrix::identity()).unwrap();
+        let stretched = UnitEllipsoid::new(vector::<T, 6>(semi), SMatrix::identity()).unwrap();
+        let units: [(&dyn UnitSet<T, 6>, UnitEllipsoid<f64, 6>); 2] =
             [(&Ball::unit(), round([1.0; 6])), (&stretched, round(semi))];
-        for ((q, wide_q), least) in gauges.into_iter().zip([1.0, 0.2]) {
+        for ((q, wide_q), least) in units.into_iter().zip([1.0, 0.2]) {
             let answer = Workspace::<T, 6, 128, 1024>::new().solver().solve(&set, q, &options());
             let truth = Workspace::<f64, 6, 256, 2048>::new().solver().solve(&wide, &wide_q, &options());
             let (lower, upper) = (answer.lower.to_f64(), answer.upper.to_f64());
@@ -89,7 +89,7 @@ fn two_soft_fingers<T: Real>(seed: u64) {
             assert!(lower <= truth.upper && truth.lower <= upper, "{what}");
             assert!(truth.lower > 0.0, "{what}");
             let rounding = T::count(16) * T::ROUNDOFF * Support::<T, 6>::extent(&set);
-            let margin = (set.error() + rounding).to_f64() / answer.gauge.to_f64();
+            let margin = (set.error() + rounding).to_f64() / answer.unit.to_f64();
             if answer.outcome == Outcome::Degenerate {
                 assert!(lower <= 0.0 && truth.lower <= flat_at_most(&set, least), "{what} {margin:e}");
                 assert!(upper <= truth.upper + 3.0 * margin, "{what} {margin:e}");
@@ -144,7 +144,7 @@ fn two_soft_fingers_by_conic_programs<T: Real>(seed: u64) {
         // Half a margin more than what the first simplex asks of a width, along any direction.
         let margin = set.error().to_f64() + 16.0 * T::ROUNDOFF.to_f64() * set.extent().to_f64();
         if d * least > 4.5 * margin + 48.0 * T::ROUNDOFF.to_f64() * set.extent().to_f64() {
-            assert!(lower > 0.0 && upper - lower <= 0.05 * d + 2.0 * margin / answer.gauge.to_f64(), "{what}");
+            assert!(lower > 0.0 && upper - lower <= 0.05 * d + 2.0 * margin / answer.unit.to_f64(), "{what}");
         }
     }
     assert!(known > 40, "{known}");

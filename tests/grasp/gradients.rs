@@ -11,7 +11,7 @@ use qdist::grasp::{
     Contact, Friction, HandContact, Jacobian, Kink, Norm, Primitive, Refined, WrenchFrame, WrenchSet, active_wrenches,
     default_tolerance,
 };
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::{Options, Vector};
 
 type Grasp = Vec<HandContact<f64>>;
@@ -97,7 +97,13 @@ impl Change {
 
 /// d near a direction: for a polytope the ray along its vertex, for others the polar iteration. Richardson's
 /// extrapolation is not needed: d is stationary there.
-fn d(grasp: &Grasp, frame: &WrenchFrame<f64>, norm: Norm, q: &dyn Gauge<f64, 6>, near: &Vector<f64, 6>) -> Option<f64> {
+fn d(
+    grasp: &Grasp,
+    frame: &WrenchFrame<f64>,
+    norm: Norm,
+    q: &dyn UnitSet<f64, 6>,
+    near: &Vector<f64, 6>,
+) -> Option<f64> {
     let mut u = *near;
     let mut best = f64::MAX;
     for _ in 0..200 {
@@ -116,14 +122,14 @@ fn d(grasp: &Grasp, frame: &WrenchFrame<f64>, norm: Norm, q: &dyn Gauge<f64, 6>,
     Some(best)
 }
 
-fn gauges(dice: &mut Dice) -> Vec<(&'static str, Box<dyn Gauge<f64, 6>>)> {
+fn unit_sets(dice: &mut Dice) -> Vec<(&'static str, Box<dyn UnitSet<f64, 6>>)> {
     let mut axes = || Vector::from_fn(|_, _| dice.range(0.5, 2.0));
     let (ellipsoid, half, semi, end) = (axes(), axes(), axes(), axes());
     let turn = SMatrix::from(dice.rotation::<6>());
     vec![
         ("ball", Box::new(Ball::unit())),
-        ("ellipsoid", Box::new(EllipsoidGauge::new(ellipsoid, turn).unwrap())),
-        ("box", Box::new(BoxGauge::new(half).unwrap())),
+        ("ellipsoid", Box::new(UnitEllipsoid::new(ellipsoid, turn).unwrap())),
+        ("box", Box::new(UnitBox::new(half).unwrap())),
         ("cross-polytope", Box::new(CrossPolytope::new(semi).unwrap())),
         ("segment", Box::new(Segment::new(end.component_mul(&Vector::from(dice.direction()))).unwrap())),
     ]
@@ -159,7 +165,7 @@ fn compare(seed: u64, rounds: usize, relative: f64, joints: &dyn Fn(&mut Dice) -
         let primitives = active_wrenches(&grasp, &frame, default_tolerance(), &mut out).unwrap();
         let norm = dice.pick(&[Norm::L1, Norm::LInf]);
         let set = WrenchSet::new(primitives, norm);
-        let (name, q) = gauges(&mut dice).swap_remove(round % 5);
+        let (name, q) = unit_sets(&mut dice).swap_remove(round % 5);
         let options = Options { relative, ..Options::default() };
         let answer = memory.solver::<f64, 6>().solve(&set, &*q, &options);
         if !(answer.lower > 1e-3) {
@@ -254,7 +260,7 @@ fn soft(p: [f64; 3], n: [f64; 3]) -> HandContact<f64> {
     HandContact { contact, jacobian: None }
 }
 
-fn refined<'a>(primitives: &'a [Primitive<f64>], norm: Norm, q: &dyn Gauge<f64, 6>) -> Refined<'a, f64> {
+fn refined<'a>(primitives: &'a [Primitive<f64>], norm: Norm, q: &dyn UnitSet<f64, 6>) -> Refined<'a, f64> {
     let mut memory = Memory::new::<f64, 6>(4096, 4096);
     let set = WrenchSet::new(primitives, norm);
     let answer = memory.solver::<f64, 6>().solve_in_span(&set, q, &Options { relative: 1e-2, ..Options::default() });
@@ -270,10 +276,10 @@ fn symmetric_grasps_have_kinks() {
     let three =
         [soft([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]), soft([-c, s, 0.0], [c, -s, 0.0]), soft([-c, -s, 0.0], [c, s, 0.0])];
     let ball = Ball::unit();
-    let boxed = BoxGauge::new(Vector::repeat(1.0)).unwrap();
+    let boxed = UnitBox::new(Vector::repeat(1.0)).unwrap();
     for hand in [&pinch[..], &three[..]] {
         for norm in [Norm::L1, Norm::LInf] {
-            for q in [&ball as &dyn Gauge<f64, 6>, &boxed] {
+            for q in [&ball as &dyn UnitSet<f64, 6>, &boxed] {
                 let mut out = [Primitive::empty(); 3];
                 let primitives = active_wrenches(hand, &frame, default_tolerance(), &mut out).unwrap();
                 let refined = refined(primitives, norm, q);
@@ -303,16 +309,16 @@ fn planar_fingers() {
         places.iter().map(finger).collect()
     };
     let still = nalgebra::Rotation3::identity();
-    let ellipse = EllipsoidGauge::new(Vector::from([1.0, 1.3, 1.0, 1.0, 1.0, 0.7]), SMatrix::identity()).unwrap();
+    let ellipse = UnitEllipsoid::new(Vector::from([1.0, 1.3, 1.0, 1.0, 1.0, 0.7]), SMatrix::identity()).unwrap();
     for norm in [Norm::L1, Norm::LInf] {
-        for q in [&Ball::unit() as &dyn Gauge<f64, 6>, &ellipse] {
+        for q in [&Ball::unit() as &dyn UnitSet<f64, 6>, &ellipse] {
             let at = |places: &[(f64, f64, f64, f64); 3], turn: &nalgebra::Rotation3<f64>| {
                 let hand = hand(places, turn);
                 let mut out = [Primitive::empty(); 3];
                 let primitives = active_wrenches(&hand, &frame, default_tolerance(), &mut out).unwrap();
                 let refined = refined(primitives, norm, q);
                 assert_eq!((refined.kink, refined.answer.dimension), (None, 3));
-                let d = refined.set().value(&refined.answer.direction) / refined.answer.gauge;
+                let d = refined.set().value(&refined.answer.direction) / refined.answer.unit;
                 // No direction of the plane is weaker.
                 for i in 0..2000 {
                     let (z, a) = (1.0 - f64::from(i) / 1000.0, f64::from(i) * 2.4);
@@ -411,7 +417,7 @@ fn other_answers() {
         if wide.kink.is_none() && narrow.kink.is_none() {
             compared += 1;
             assert!((wide.answer.upper - f64::from(narrow.answer.upper)).abs() < 1e-3 * wide.answer.upper);
-            let ratio = set.value(&narrow.answer.direction) / narrow.answer.gauge;
+            let ratio = set.value(&narrow.answer.direction) / narrow.answer.unit;
             assert!((wide.answer.upper - f64::from(ratio)).abs() < 1e-5 * wide.answer.upper);
             for i in 0..4 {
                 let (a, b) = (wide.share(i).unwrap(), narrow.share(i).unwrap());

@@ -8,7 +8,7 @@ use common::memory::Memory;
 use grasp_common::random_contact;
 use nalgebra::SMatrix;
 use qdist::grasp::{ForceOptions, ForceOutcome, ForceSolver, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Failure, Points, Support};
 use qdist::{Options, Outcome, Vector};
 use std::cell::Cell;
@@ -30,12 +30,12 @@ fn open_grasp(dice: &mut Dice, count: usize) -> Vec<Primitive<f64>> {
     wrenches(&contacts, &frame, &mut memory).unwrap().to_vec()
 }
 
-fn gauges() -> Vec<Box<dyn Gauge<f64, 6>>> {
+fn units() -> Vec<Box<dyn UnitSet<f64, 6>>> {
     let axes = Vector::from([1.0, 2.0, 0.5, 1.0, 1.0, 3.0]);
     vec![
         Box::new(Ball::unit()),
-        Box::new(EllipsoidGauge::new(axes, SMatrix::identity()).unwrap()),
-        Box::new(BoxGauge::new(axes).unwrap()),
+        Box::new(UnitEllipsoid::new(axes, SMatrix::identity()).unwrap()),
+        Box::new(UnitBox::new(axes).unwrap()),
         Box::new(CrossPolytope::new(axes).unwrap()),
     ]
 }
@@ -51,7 +51,7 @@ fn an_open_grasp_costs_no_more_than_its_proof() {
         let primitives = open_grasp(&mut dice, 2 + case % 6);
         for norm in [Norm::L1, Norm::LInf] {
             let w = WrenchSet::new(&primitives, norm);
-            for q in gauges() {
+            for q in units() {
                 let answer = memory.solver::<f64, 6>().solve(&w, &*q, &Options::default());
                 assert!(answer.lower == 0.0 && answer.upper >= 0.0, "{case} {:e} {:e}", answer.lower, answer.upper);
                 assert!(answer.upper <= 1e-12 * w.extent().max(1.0), "{case} {:e}", answer.upper);
@@ -88,7 +88,7 @@ fn an_open_grasp_that_does_not_tell() {
     for case in 0..100 {
         let primitives = open_grasp(&mut dice, 2 + case % 6);
         let w = WrenchSet::new(&primitives, Norm::LInf);
-        for q in gauges() {
+        for q in units() {
             let answer = memory.solver::<f64, 6>().solve(&Silent(&w), &*q, &Options::default());
             let size = w.extent().max(1.0);
             assert!(answer.lower <= 0.0 && answer.upper >= 0.0, "{case} {:e} {:e}", answer.lower, answer.upper);
@@ -162,7 +162,7 @@ fn nearly_open_sets_are_told_from_open_ones() {
         let points = [[-1.0, -1.0, -d], [1.0, -1.0, -d], [0.0, 1.0, -d], [0.0, 0.0, 1.0]];
         let set = Points::new(&points).unwrap();
         for q in
-            [Box::new(Ball::unit()) as Box<dyn Gauge<f64, 3>>, Box::new(BoxGauge::new(Vector::repeat(1.0)).unwrap())]
+            [Box::new(Ball::unit()) as Box<dyn UnitSet<f64, 3>>, Box::new(UnitBox::new(Vector::repeat(1.0)).unwrap())]
         {
             let answer = memory.solver::<f64, 3>().solve(&set, &*q, &Options::default());
             assert!(answer.lower <= d && d <= answer.upper, "{d:e} {:e} {:e}", answer.lower, answer.upper);
@@ -217,7 +217,7 @@ fn a_polytopal_q_of_many_vertices_is_not_left_to_rays() {
 /// Vertices that are the origin, and one that is not: the deadline was never asked.
 struct Nothing(usize);
 
-impl Gauge<f64, 3> for Nothing {
+impl UnitSet<f64, 3> for Nothing {
     fn value(&self, u: &Vector<f64, 3>) -> Result<f64, Failure> {
         Ok((0.1 * u.x).max(0.0))
     }

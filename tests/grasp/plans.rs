@@ -9,7 +9,7 @@ use common::memory::{Memory, Seen, broken_promise};
 use grasp_common::{recorded, value, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{Failure, Rigid, Support};
 use qdist::{Answer, Options, Outcome, Plan, Real, Vector};
 use serde_json::Value;
@@ -86,11 +86,11 @@ impl Task {
         }
     }
 
-    fn gauge<T: Real>(&self) -> Box<dyn Gauge<T, 6>> {
+    fn unit<T: Real>(&self) -> Box<dyn UnitSet<T, 6>> {
         match self {
             Task::Ball => Box::new(Ball::unit()),
-            Task::Ellipsoid(s) => Box::new(EllipsoidGauge::new(vector(*s), SMatrix::identity()).unwrap()),
-            Task::Box(s) => Box::new(BoxGauge::new(vector(*s)).unwrap()),
+            Task::Ellipsoid(s) => Box::new(UnitEllipsoid::new(vector(*s), SMatrix::identity()).unwrap()),
+            Task::Box(s) => Box::new(UnitBox::new(vector(*s)).unwrap()),
         }
     }
 }
@@ -198,7 +198,7 @@ fn budgets<T: Real>() {
             1 => Task::Ellipsoid([2.0, 1.0, 1.0, 0.5, 1.0, 1.0]),
             _ => Task::Box([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]),
         };
-        let (set, gauge) = (grasp.set(), task.gauge::<T>());
+        let (set, unit) = (grasp.set(), task.unit::<T>());
         let quotient = |u: &Vector<f64, 6>| grasp.height(u) / task.value::<T>(u);
         let blur = grasp.blur();
         let (mut lower, mut upper) = (f64::MIN, f64::MAX);
@@ -209,7 +209,7 @@ fn budgets<T: Real>() {
                 limit += 1 + dice.below(5 + limit as usize) as u32;
                 let o = Options { max_iterations: limit, relative: T::of(1e-2), ..Options::default() };
                 let mut memory = Memory::new::<T, 6>(size.0, size.1);
-                let answer = memory.solver::<T, 6>().solve(&set, &*gauge, &o);
+                let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
                 let what = format!("grasp {round}");
                 let found = check(&what, &answer, &o, size, quotient, blur, &mut dice);
                 let seen = Seen::from(&answer);
@@ -228,7 +228,7 @@ fn budgets<T: Real>() {
                     asked.get() > limit
                 };
                 let free = Options { max_iterations: 0, ..o };
-                let cut = memory.solver::<T, 6>().solve_until(&Silent(set), &*gauge, &free, Some(&stop));
+                let cut = memory.solver::<T, 6>().solve_until(&Silent(set), &*unit, &free, Some(&stop));
                 check(&what, &cut, &free, size, quotient, blur, &mut dice);
                 assert!(cut.iterations <= limit, "{what} {limit} {}", cut.iterations);
                 if round % 4 != 3 {
@@ -243,7 +243,7 @@ fn budgets<T: Real>() {
                 // A threshold near what is known of d.
                 let near = T::of(0.5 * (lower.max(0.0) + upper) * (1.0 + dice.pick(&[0.0, 0.1, -0.1, 0.5, -0.5])));
                 let asked = Options { threshold: Some(near), ..o };
-                let answer = memory.solver::<T, 6>().solve(&set, &*gauge, &asked);
+                let answer = memory.solver::<T, 6>().solve(&set, &*unit, &asked);
                 check(&what, &answer, &asked, size, quotient, blur, &mut dice);
                 let near = near.to_f64();
                 match answer.outcome {
@@ -302,10 +302,10 @@ fn stiff<T: Real>() {
             list.push(touch(std::array::from_fn(|i| p[i] + near * dice.signed()), n.into(), mu, mus));
         }
         let grasp = Grasp::new(list, scale, if round % 3 == 0 { Norm::L1 } else { Norm::LInf });
-        let (set, gauge) = (grasp.set(), task.gauge::<T>());
+        let (set, unit) = (grasp.set(), task.unit::<T>());
         let quotient = |u: &Vector<f64, 6>| grasp.height(u) / task.value::<T>(u);
         let o = Options { relative: T::of(0.02), max_iterations: 1500, ..Options::default() };
-        let answer = memory.solver::<T, 6>().solve(&set, &*gauge, &o);
+        let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
         // In units of Q, that the blur of a height is.
         let u = wide(&answer.direction);
         let least = match task {
@@ -455,12 +455,10 @@ fn references<T: Real>(loose: f64) {
             let norm = if r["norm"] == "L1" { Norm::L1 } else { Norm::LInf };
             let grasp = Grasp::new(list.clone(), 1.0, norm);
             let q = &r["Q"];
-            let gauge: Box<dyn Gauge<T, 6>> = match q["type"].as_str().unwrap() {
+            let unit: Box<dyn UnitSet<T, 6>> = match q["type"].as_str().unwrap() {
                 "ball" => Box::new(Ball::unit()),
-                "ellipsoid" => {
-                    Box::new(EllipsoidGauge::new(vector(six(&q["semi_axes"])), SMatrix::identity()).unwrap())
-                }
-                "box" => Box::new(BoxGauge::new(vector(six(&q["half_widths"]))).unwrap()),
+                "ellipsoid" => Box::new(UnitEllipsoid::new(vector(six(&q["semi_axes"])), SMatrix::identity()).unwrap()),
+                "box" => Box::new(UnitBox::new(vector(six(&q["half_widths"]))).unwrap()),
                 "cross_polytope" => Box::new(CrossPolytope::new(vector(six(&q["half_axes"]))).unwrap()),
                 "segment" => Box::new(Segment::new(vector(six(&q["wrench"]))).unwrap()),
                 other => panic!("Q {other}"),
@@ -476,7 +474,7 @@ fn references<T: Real>(loose: f64) {
             ] {
                 let o = Options { relative: T::of(relative), max_iterations: limit as u32, ..Options::default() };
                 let mut memory = Memory::new::<T, 6>(size.0, size.1);
-                let answer = memory.solver::<T, 6>().solve(&set, &*gauge, &o);
+                let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
                 let seen = Seen::from(&answer);
                 let tell =
                     format!("{} {norm:?} {} {size:?} {limit}: {d} {seen:?} {:?}", v["id"], q["type"], answer.plan);
@@ -564,7 +562,7 @@ fn derivatives_of_a_grasp() {
             for i in 0..4 {
                 let middle = value(&base.contacts[i], &base.frame, &u);
                 let change = value(&more.contacts[i], &more.frame, &u) - value(&less.contacts[i], &less.frame, &u);
-                let change = change / (2.0 * h) / answer.gauge;
+                let change = change / (2.0 * h) / answer.unit;
                 if middle.abs() < 0.05 {
                     (low, high) = (low + f64::min(change, 0.0), high + f64::max(change, 0.0));
                 } else if middle > 0.0 {

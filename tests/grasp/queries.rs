@@ -8,7 +8,7 @@ use common::dice::Dice;
 use grasp_common::{contact_map, radii, recorded, value, vector, wide};
 use nalgebra::SMatrix;
 use qdist::grasp::{Closure, Contact, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{Failure, Support};
 use qdist::{Options, Real, Vector, Workspace};
 
@@ -445,10 +445,10 @@ fn the_best_of_a_batch_is_the_best_of_its_answers() {
 fn the_weakest_wrench_touches_the_boundary() {
     let mut dice = Dice::new(44);
     let axes = Vector::from([1.0, 2.0, 0.5, 1.0, 0.2, 3.0]);
-    let gauges: [Box<dyn Gauge<f64, 6>>; 5] = [
+    let units: [Box<dyn UnitSet<f64, 6>>; 5] = [
         Box::new(Ball::unit()),
-        Box::new(EllipsoidGauge::new(axes, SMatrix::identity()).unwrap()),
-        Box::new(BoxGauge::new(axes).unwrap()),
+        Box::new(UnitEllipsoid::new(axes, SMatrix::identity()).unwrap()),
+        Box::new(UnitBox::new(axes).unwrap()),
         Box::new(CrossPolytope::new(axes).unwrap()),
         Box::new(Segment::new(axes).unwrap()),
     ];
@@ -457,7 +457,7 @@ fn the_weakest_wrench_touches_the_boundary() {
     while asked < 20 {
         let primitives = primitives(&contacts::<f64>(&mut dice, 5));
         let set = WrenchSet::new(&primitives, Norm::LInf);
-        for q in &gauges {
+        for q in &units {
             let answer = memory.solver().solve(&set, q.as_ref(), &Options { relative: 1e-3, ..Options::default() });
             if !(answer.lower > 0.0) {
                 continue;

@@ -8,7 +8,7 @@ use grasp_common::{contact_map, direction, radii, random_contact, value, vector,
 use nalgebra::SMatrix;
 use qdist::grasp::{Contact, ContactError, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
 use qdist::internal::norm as norm_of;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, Gauge, Segment};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitSet};
 use qdist::support::Support;
 use qdist::{Options, Real, Vector, Workspace};
 
@@ -193,7 +193,7 @@ fn table_one_by_the_solver() {
     let set = WrenchSet::new(&primitives, Norm::LInf);
     let mut memory = Box::new(Workspace::<f64, 6, 512, 8192>::new());
     let options = Options { relative: 1e-3, ..Options::default() };
-    let mut row = |q: &dyn Gauge<f64, 6>, d: f64| {
+    let mut row = |q: &dyn UnitSet<f64, 6>, d: f64| {
         let answer = memory.solver().solve(&set, q, &options);
         let (lower, upper) = (answer.lower, answer.upper);
         assert!(lower <= d * (1.0 + 1e-15) && d * (1.0 - 1e-15) <= upper, "{d}: [{lower}, {upper}]");
@@ -202,7 +202,7 @@ fn table_one_by_the_solver() {
     let ones = Vector::repeat(1.0);
     row(&Ball::unit(), 0.41 / (0.1681f64 + 1.69 + 1.0).sqrt());
     row(&CrossPolytope::new(ones).unwrap(), 0.41 / 1.3);
-    row(&BoxGauge::new(ones).unwrap(), 0.41 / (0.41 + 2.3 * 2f64.sqrt()));
+    row(&UnitBox::new(ones).unwrap(), 0.41 / (0.41 + 2.3 * 2f64.sqrt()));
     row(&Segment::new(Vector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])).unwrap(), 1.0);
 }
 

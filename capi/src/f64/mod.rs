@@ -1,7 +1,6 @@
 //! The C ABI for `f64`.
 
 pub mod combine;
-pub mod gauges;
 #[cfg(feature = "grasp")]
 pub mod grasp;
 pub mod half_space;
@@ -13,4 +12,5 @@ pub mod sets;
 pub mod shapes;
 pub mod solver;
 pub mod span;
+pub mod unit_sets;
 pub mod warm;

@@ -14,10 +14,10 @@
 //! The gradient of d > 0. d = min over u of h_A(u) / h_Q(u); where the minimiser u is unique and A smooth there, the envelope theorem
 //! gives the derivative with respect to any parameter p of A or Q from quantities of the result:
 //!
-//!   dd/dp = (direction . ds/dp - d * dh_Q/dp) / gauge
+//!   dd/dp = (direction . ds/dp - d * dh_Q/dp) / h_Q
 //!
 //! with ds/dp the velocity of A's point at `support` as p changes, and dh_Q/dp the change of h_Q(direction). Where A has a face
-//! there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / gauge.
+//! there, ds/dp is the mean of the velocities of `points` with `weights`. When A is translated, the gradient is direction / h_Q.
 //! It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
 //! one-sided derivatives, each the least of those at all minimisers.
 
@@ -29,8 +29,8 @@ use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, overflow, plan,
     qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status,
 };
-use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
+use super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use core::ffi::c_void;
 #[cfg(feature = "grasp")]
 use qdist::Plan;
@@ -128,7 +128,7 @@ pub struct qdist_result_f64 {
     /// The point of A (its ball included) that is farthest along `direction`.
     pub support: [f64; 6],
     /// h_Q(direction).
-    pub gauge: f64,
+    pub unit: f64,
     /// With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
     pub rival: [f64; 6],
     /// Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
@@ -223,13 +223,13 @@ pub unsafe extern "C" fn qdist_depth3_f64(
     status(solve())
 }
 
-/// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, which is also the solver's. Q may be
+/// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
 /// NULL: the unit ball.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_solve2_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -242,7 +242,7 @@ pub unsafe extern "C" fn qdist_solve2_f64(
 pub unsafe extern "C" fn qdist_solve3_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn qdist_solve3_f64(
 pub unsafe extern "C" fn qdist_solve4_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -268,7 +268,7 @@ pub unsafe extern "C" fn qdist_solve4_f64(
 pub unsafe extern "C" fn qdist_solve5_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -281,7 +281,7 @@ pub unsafe extern "C" fn qdist_solve5_f64(
 pub unsafe extern "C" fn qdist_solve6_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -363,7 +363,7 @@ pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) ->
         upper: answer.upper,
         direction: vector(&answer.direction),
         support: vector(&answer.support),
-        gauge: answer.gauge,
+        unit: answer.unit,
         rival: answer.rival.as_ref().map_or([0.0; MAX_DIMENSION], vector),
         weights: [0.0; MAX_POINTS],
         points: [0.0; MAX_POINTS * MAX_DIMENSION],
@@ -390,7 +390,7 @@ pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) ->
 /// The answer of a result in dimension 6, without the evidence for `lower`: what there is to know about the minimiser.
 #[cfg(feature = "grasp")]
 pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
-    finite(&[result.lower, result.upper, result.gauge])?;
+    finite(&[result.lower, result.upper, result.unit])?;
     finite(&result.direction).and(finite(&result.support)).and(finite(&result.rival))?;
     let rival = flag(result.has_rival)?.then(|| Vector::from(result.rival));
     Ok(Answer {
@@ -399,7 +399,7 @@ pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
         upper: result.upper,
         direction: Vector::from(result.direction),
         support: Vector::from(result.support),
-        gauge: result.gauge,
+        unit: result.unit,
         rival,
         plan: Plan::Expansion,
         witness: Simplex::new(Vertex::empty()),
@@ -418,7 +418,7 @@ pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
 pub(super) struct Asked<'w, const N: usize> {
     pub solver: Opened<'w, f64, N>,
     pub a: &'w CheckedSet,
-    pub q: CheckedGauge,
+    pub q: CheckedUnit,
     pub options: Options<f64, N>,
     pub deadline: Deadline,
     result: *mut qdist_result_f64,
@@ -433,7 +433,7 @@ impl<const N: usize> Asked<'_, N> {
     pub unsafe fn new(
         solver: *mut qdist_solver,
         a: *const qdist_set_f64,
-        q: *const qdist_gauge_f64,
+        q: *const qdist_unit_f64,
         options: *const qdist_options_f64,
         result: *mut qdist_result_f64,
     ) -> Check<Self> {
@@ -445,7 +445,7 @@ impl<const N: usize> Asked<'_, N> {
             known_size((&raw const (*result).struct_size).read(), size_of::<qdist_result_f64>())?;
             let a = a.checked::<N>()?;
             let (options, deadline) = convert::<N>(options)?;
-            Ok(Self { solver, a, q: CheckedGauge::new::<N>(q)?, options, deadline, result })
+            Ok(Self { solver, a, q: CheckedUnit::new::<N>(q)?, options, deadline, result })
         }
     }
 
@@ -464,13 +464,13 @@ impl<const N: usize> Asked<'_, N> {
 unsafe fn solve<const N: usize>(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> Check {
     // SAFETY: the caller's promise.
     let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
     let Asked { solver, a, q, options, deadline, .. } = &mut asked;
-    let answer = deadline.during(|interrupt| solver.solve_until(*a, q.gauge(), options, interrupt));
+    let answer = deadline.during(|interrupt| solver.solve_until(*a, q.unit(), options, interrupt));
     asked.conclude(&answer)
 }

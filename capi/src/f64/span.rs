@@ -8,17 +8,17 @@
 
 use super::super::handle::qdist_solver;
 use super::super::status::{Check, qdist_status, status};
-use super::gauges::qdist_gauge_f64;
 use super::query::{Asked, qdist_options_f64, qdist_result_f64};
 use super::sets::qdist_set_f64;
+use super::unit_sets::qdist_unit_f64;
 
-/// The depth d of the origin in the set A with respect to the gauge set Q, in the linear span of A, in dimension 2. Arguments as of
+/// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in dimension 2. Arguments as of
 /// qdist_solve2.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_solve_in_span2_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn qdist_solve_in_span2_f64(
 pub unsafe extern "C" fn qdist_solve_in_span3_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -44,7 +44,7 @@ pub unsafe extern "C" fn qdist_solve_in_span3_f64(
 pub unsafe extern "C" fn qdist_solve_in_span4_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn qdist_solve_in_span4_f64(
 pub unsafe extern "C" fn qdist_solve_in_span5_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn qdist_solve_in_span5_f64(
 pub unsafe extern "C" fn qdist_solve_in_span6_f64(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> qdist_status {
@@ -83,13 +83,13 @@ pub unsafe extern "C" fn qdist_solve_in_span6_f64(
 unsafe fn solve_in_span<const N: usize>(
     solver: *mut qdist_solver,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
 ) -> Check {
     // SAFETY: the caller's promise.
     let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
     let Asked { solver, a, q, options, deadline, .. } = &mut asked;
-    let answer = deadline.during(|interrupt| solver.solve_in_span_until(*a, q.gauge(), options, interrupt));
+    let answer = deadline.during(|interrupt| solver.solve_in_span_until(*a, q.unit(), options, interrupt));
     asked.conclude(&answer)
 }

@@ -16,16 +16,16 @@
 use super::super::generic::{MAX_DIMENSION, aligned, dimension, dot, finite, first, known_size, padded, shared};
 use super::super::handle::qdist_solver;
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, overflow, qdist_status, status};
-use super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::query::{Asked, qdist_options_f64, qdist_result_f64};
 use super::sets::qdist_set_f64;
+use super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use qdist::Tracker;
 use qdist::internal::REMEMBERED;
 use qdist::{Real, Vector};
 
 const _: () = assert!(REMEMBERED == 4);
 
-/// What a loop remembers: plain data without addresses, for one set, one gauge and one dimension. Made by
+/// What a loop remembers: plain data without addresses, for one set, one unit set and one dimension. Made by
 /// qdist_tracker_init_f64.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn qdist_tracker_init_f64(tracker: *mut qdist_tracker_f64,
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn qdist_tracker_lower_after_f64(
     tracker: *const qdist_tracker_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     lower: *mut f64,
 ) -> qdist_status {
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn qdist_tracker_lower_after_f64(
     status(ask())
 }
 
-/// The depth d of the origin in the set A with respect to the gauge set Q, in dimension 2, for the next tick of a loop, and
+/// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, for the next tick of a loop, and
 /// takes note of it in the tracker. Arguments as of qdist_solve2; besides:
 ///
 /// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn qdist_solve_warm2_f64(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn qdist_solve_warm3_f64(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn qdist_solve_warm4_f64(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn qdist_solve_warm5_f64(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -152,7 +152,7 @@ pub unsafe extern "C" fn qdist_solve_warm6_f64(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -194,11 +194,11 @@ impl qdist_tracker_f64 {
 
     /// # Safety
     /// What the header asks of the caller of `qdist_solve`, for `q`.
-    unsafe fn lower_after<const N: usize>(&self, q: *const qdist_gauge_f64, moved: f64) -> Check<f64> {
+    unsafe fn lower_after<const N: usize>(&self, q: *const qdist_unit_f64, moved: f64) -> Check<f64> {
         let tracker = self.checked::<N>()?;
         // SAFETY: the caller's promise.
-        let q = unsafe { CheckedGauge::new::<N>(q) }?;
-        Ok(tracker.lower_after(moved, q.gauge()))
+        let q = unsafe { CheckedUnit::new::<N>(q) }?;
+        Ok(tracker.lower_after(moved, q.unit()))
     }
 }
 
@@ -208,7 +208,7 @@ unsafe fn solve_warm<const N: usize>(
     solver: *mut qdist_solver,
     tracker: *mut qdist_tracker_f64,
     a: *const qdist_set_f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     moved: f64,
     options: *const qdist_options_f64,
     result: *mut qdist_result_f64,
@@ -219,7 +219,7 @@ unsafe fn solve_warm<const N: usize>(
     // SAFETY: the caller's promise.
     let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
     let Asked { solver, a, q, options, deadline, .. } = &mut asked;
-    let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.gauge(), moved, options, interrupt));
+    let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.unit(), moved, options, interrupt));
     overflow(answer.failure)?;
     let mut noted = qdist_tracker_f64::new(N as u32);
     noted.lower = memory.lower;

@@ -27,8 +27,8 @@ use serde_json::Value;
 
 use crate::Trouble;
 use crate::grasp::field::Field;
-use crate::grasp::gauges::{Q, Shape};
 use crate::grasp::keys::repeated;
+use crate::grasp::unit_sets::{Q, Shape};
 
 /// One grasp of the file.
 pub struct Grasp {
@@ -302,10 +302,10 @@ fn reference(field: &Field) -> Result<Reference, Trouble> {
     };
     let d = field.get("d").maybe(Field::number)?;
     let tolerance = field.get("tol").maybe(Field::not_negative)?.unwrap_or(1e-9);
-    Ok(Reference { set, norm, q: gauge(field)?, d, tolerance })
+    Ok(Reference { set, norm, q: unit(field)?, d, tolerance })
 }
 
-fn gauge(reference: &Field) -> Result<Q, Trouble> {
+fn unit(reference: &Field) -> Result<Q, Trouble> {
     let q = reference.get("Q");
     if !q.value.is_object() {
         return q.wrong("is not an object");

@@ -13,7 +13,6 @@ use qdist::grasp::Norm;
 
 pub mod csv;
 mod field;
-pub mod gauges;
 pub mod input;
 mod keys;
 mod plot;
@@ -23,13 +22,14 @@ mod slices;
 mod surface;
 mod table;
 mod table1;
+pub mod unit_sets;
 mod words;
 
 use crate::{CLOSED, Trouble, written};
-use gauges::{Q, Shape};
 use input::{Grasp, Reference, Set};
 use query::Memory;
 use sets::Sets;
+use unit_sets::{Q, Shape};
 
 /// What a file looks like; the end of `--help`.
 const FILES: &str = r#"The least that a file must say, a pinch of a block by two soft fingertips (normals n point into the object):

@@ -4,14 +4,14 @@ use std::time::{Duration, Instant};
 
 use qdist::grasp::{Norm, WrenchSet};
 use qdist::nalgebra::SMatrix;
-use qdist::qset::{Gauge, Segment};
+use qdist::qset::{Segment, UnitSet};
 use qdist::support::{Rigid, Support};
 use qdist::{Answer, Options, Outcome, Solver, Vector, Workspace};
 
 use crate::Trouble;
-use crate::grasp::gauges::Q;
 use crate::grasp::input::Set;
 use crate::grasp::sets::{Part, Wrenches, value};
+use crate::grasp::unit_sets::Q;
 
 /// Facets and vertices of the workspace.
 pub type Memory = Workspace<f64, 6, 1024, 4096>;
@@ -49,7 +49,7 @@ fn smooth(relative: f64) -> Options<f64, 6> {
 /// A set, where it is measured, and by what.
 struct Query<'a> {
     set: WrenchSet<'a, f64, Part>,
-    gauge: Box<dyn Gauge<f64, 6> + 'a>,
+    unit: Box<dyn UnitSet<f64, 6> + 'a>,
     /// The end of the segment, if Q is one.
     end: Option<Vector<f64, 6>>,
     /// In the span of the set, or in all of R^6.
@@ -67,8 +67,8 @@ impl Query<'_> {
         options: &Options<f64, 6>,
     ) -> Answer<f64, 6> {
         match self.within {
-            true => solver.solve_in_span(a, &*self.gauge, options),
-            false => solver.solve(a, &*self.gauge, options),
+            true => solver.solve_in_span(a, &*self.unit, options),
+            false => solver.solve(a, &*self.unit, options),
         }
     }
 
@@ -112,7 +112,7 @@ impl Query<'_> {
             let upper = (value(&self.set, &rest.direction) + self.set.error()) / along;
             if rest.upper < 0.0 && along > 0.0 && upper < best.upper {
                 best =
-                    Answer { upper, direction: rest.direction, support: rest.support + end * s, gauge: along, ..best };
+                    Answer { upper, direction: rest.direction, support: rest.support + end * s, unit: along, ..best };
             }
             if best.upper <= 2.0 * least {
                 return Answer { outcome: Outcome::Touching, ..best };
@@ -138,7 +138,7 @@ pub fn solve(
         true => Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() },
         false => smooth(relative),
     };
-    let query = Query { set, gauge: q.gauge()?, end, within, options, relative };
+    let query = Query { set, unit: q.unit()?, end, within, options, relative };
     let mut times = Vec::new();
     let begin = Instant::now();
     let answer = loop {
@@ -161,9 +161,9 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
     if !wrenches.contains(v) {
         return Some(0.0);
     }
-    let (set, gauge) = (WrenchSet::new(&wrenches.parts, norm), Box::new(Segment::new(*v).ok()?));
+    let (set, unit) = (WrenchSet::new(&wrenches.parts, norm), Box::new(Segment::new(*v).ok()?));
     let options = Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: 200, ..Options::default() };
-    let query = Query { set, gauge, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
+    let query = Query { set, unit, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
     let upper = query.answer(solver).upper.max(0.0);
     (upper < f64::MAX).then_some(upper)
 }
@@ -171,9 +171,9 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grasp::gauges::Shape;
     use crate::grasp::input::{self, Reference};
     use crate::grasp::sets::Sets;
+    use crate::grasp::unit_sets::Shape;
     use crate::grasp::{csv, table};
     use qdist::grasp::{Contact, Friction, HandContact, Jacobian};
 

@@ -19,8 +19,8 @@ use qdist::nalgebra::SMatrix;
 use qdist::support::{Failure, Support};
 
 use crate::Trouble;
-use crate::grasp::gauges::Q;
 use crate::grasp::input::{Grasp, Set, Touch};
+use crate::grasp::unit_sets::Q;
 
 /// The sine of an angle: axes of Q that are nearer to a span are in it, but for the rounding of files.
 const OUT_OF_SPAN: f64 = 1e-7;

@@ -8,10 +8,10 @@ use std::io::Write;
 use qdist::Vector;
 use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm};
 
-use crate::grasp::gauges::{Q, Shape};
 use crate::grasp::input::Set;
 use crate::grasp::query::{self, Memory};
 use crate::grasp::sets::Sets;
+use crate::grasp::unit_sets::{Q, Shape};
 use crate::{Trouble, written};
 
 /// What the paper prints for one set: d, iterations, seconds.
@@ -71,10 +71,10 @@ pub fn print(out: &mut dyn Write, relative: f64) -> Result<(), Trouble> {
         format!("{:24}{head} | {ours}   Dim | {head} | Dim {ours}", ""),
     ];
     for (Row(name, q, passive, active), shape) in ROWS.iter().zip(shapes()) {
-        let gauge = Q::new(shape, None)?;
+        let unit = Q::new(shape, None)?;
         let mut line = format!("({name}) {q:<18}");
         for (set, Printed(d, k, time)) in [(Set::Passive, passive), (Set::Active, active)] {
-            let found = query::solve(&mut solver, sets.get(set), set, Norm::LInf, &gauge, relative)?;
+            let found = query::solve(&mut solver, sets.get(set), set, Norm::LInf, &unit, relative)?;
             let (answer, dimension) = (&found.answer, found.dimension);
             let gap = (answer.upper - answer.lower).max(0.0);
             let (published, dim) = match set {

@@ -2,9 +2,9 @@
 //!
 //!     cargo run --release -p qdist-fuzz --bin fuzz -- --seconds 60 [--seed 1] [--case 17]
 //!
-//! Pairs of bodies, bodies and half spaces, hulls of two bodies against a third, sets and gauges.
+//! Pairs of bodies, bodies and half spaces, hulls of two bodies against a third, sets and unit sets.
 //! Shapes from 1e-6 to 1e6 with aspect ratios up to 1e9 and zero sizes; poses that are generic, aligned,
-//! identical, touching or far away; all gauges in 2 to 6 dimensions; any capacity, tolerance, threshold and
+//! identical, touching or far away; all unit sets in 2 to 6 dimensions; any capacity, tolerance, threshold and
 //! limit; callbacks that fail or return nonsense; both scalar types. For every answer:
 //!
 //! * it keeps the promises of `common::memory::broken_promise` (no NaN, lower <= upper, outcome and numbers
@@ -18,7 +18,7 @@
 //! The first find is printed with its seed, case and numbers, and the exit code is 1.
 
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, GaugeFn, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, UnitSetFn, Vertices};
 use qdist::support::{
     BoxShape, Ellipsoid, Failure, HalfSpace, Join, Linear, Margin, Points, Rigid, Sphere, Sum, Support,
 };
@@ -511,7 +511,7 @@ fn run_join<T: Real>(parts: &[BodyText; 3], dice: &mut Dice, ledger: &mut Ledger
     }
 }
 
-// General sets and gauges.
+// General sets and unit sets.
 
 /// A set by its numbers: (base + ball) placed.
 #[derive(Clone, Debug)]
@@ -529,7 +529,7 @@ struct SetText<const N: usize> {
 }
 
 #[derive(Clone, Debug)]
-enum GaugeText<const N: usize> {
+enum UnitText<const N: usize> {
     Ball(f64),
     Box([f64; N]),
     Cross([f64; N]),
@@ -679,15 +679,15 @@ impl<T: Real, const N: usize> Support<T, N> for Held<'_, T, N> {
     }
 }
 
-impl<const N: usize> GaugeText<N> {
+impl<const N: usize> UnitText<N> {
     fn value(&self, u: &[Dd]) -> Dd {
         match self {
-            GaugeText::Ball(r) => Dd::new(*r) * norm(u),
-            GaugeText::Box(g) | GaugeText::Closure(g) => product(u, g).iter().fold(Dd::ZERO, |s, x| s + x.abs()),
-            GaugeText::Cross(g) => largest(product(u, g).iter().map(|x| x.abs())),
-            GaugeText::Ellipsoid(g, m) => norm(&product(&mapped(m, u), g)),
-            GaugeText::Segment(g) => dot(u, &wide(g)).max(Dd::ZERO),
-            GaugeText::Vertices(p) => largest(p.iter().map(|p| dot(u, &wide(p)))).max(Dd::ZERO),
+            UnitText::Ball(r) => Dd::new(*r) * norm(u),
+            UnitText::Box(g) | UnitText::Closure(g) => product(u, g).iter().fold(Dd::ZERO, |s, x| s + x.abs()),
+            UnitText::Cross(g) => largest(product(u, g).iter().map(|x| x.abs())),
+            UnitText::Ellipsoid(g, m) => norm(&product(&mapped(m, u), g)),
+            UnitText::Segment(g) => dot(u, &wide(g)).max(Dd::ZERO),
+            UnitText::Vertices(p) => largest(p.iter().map(|p| dot(u, &wide(p)))).max(Dd::ZERO),
         }
     }
 
@@ -699,10 +699,10 @@ impl<const N: usize> GaugeText<N> {
         let mut signed = || -> [f64; N] { dice.direction::<N>().map(|x| x * scale) };
         let (end, corners) = (signed(), [signed(), signed(), signed()]);
         match dice.below(8) {
-            0 | 1 => GaugeText::Ball(scale),
-            2 => GaugeText::Box(g),
-            3 => GaugeText::Cross(g),
-            4 => GaugeText::Ellipsoid(
+            0 | 1 => UnitText::Ball(scale),
+            2 => UnitText::Box(g),
+            3 => UnitText::Cross(g),
+            4 => UnitText::Ellipsoid(
                 g,
                 if dice.chance(0.5) {
                     dice.rotation::<N>()
@@ -710,57 +710,52 @@ impl<const N: usize> GaugeText<N> {
                     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
                 },
             ),
-            5 => GaugeText::Segment(if dice.chance(0.5) { end } else { g }),
-            6 => GaugeText::Vertices(corners[..1 + dice.below(3)].to_vec()),
-            _ => GaugeText::Closure(g),
+            5 => UnitText::Segment(if dice.chance(0.5) { end } else { g }),
+            6 => UnitText::Vertices(corners[..1 + dice.below(3)].to_vec()),
+            _ => UnitText::Closure(g),
         }
     }
 
     fn rounded(&self) -> Self {
         let r = |x: f64| f64::from(x as f32);
         match self {
-            GaugeText::Ball(x) => GaugeText::Ball(r(*x)),
-            GaugeText::Box(g) => GaugeText::Box(g.map(r)),
-            GaugeText::Cross(g) => GaugeText::Cross(g.map(r)),
-            GaugeText::Ellipsoid(g, m) => GaugeText::Ellipsoid(g.map(r), m.map(|row| row.map(r))),
-            GaugeText::Segment(g) => GaugeText::Segment(g.map(r)),
-            GaugeText::Vertices(p) => GaugeText::Vertices(p.iter().map(|p| p.map(r)).collect()),
-            GaugeText::Closure(g) => GaugeText::Closure(g.map(r)),
+            UnitText::Ball(x) => UnitText::Ball(r(*x)),
+            UnitText::Box(g) => UnitText::Box(g.map(r)),
+            UnitText::Cross(g) => UnitText::Cross(g.map(r)),
+            UnitText::Ellipsoid(g, m) => UnitText::Ellipsoid(g.map(r), m.map(|row| row.map(r))),
+            UnitText::Segment(g) => UnitText::Segment(g.map(r)),
+            UnitText::Vertices(p) => UnitText::Vertices(p.iter().map(|p| p.map(r)).collect()),
+            UnitText::Closure(g) => UnitText::Closure(g.map(r)),
         }
     }
 
-    fn with<T: Real, R>(&self, f: impl FnOnce(&dyn Gauge<T, N>) -> R) -> R {
+    fn with<T: Real, R>(&self, f: impl FnOnce(&dyn UnitSet<T, N>) -> R) -> R {
         let v = |x: &[f64; N]| Vector::<T, N>::from(x.map(T::of));
         match self {
-            GaugeText::Ball(r) => f(&Ball::new(T::of(*r)).unwrap()),
-            GaugeText::Box(g) => f(&BoxGauge::new(v(g)).unwrap()),
-            GaugeText::Cross(g) => f(&CrossPolytope::new(v(g)).unwrap()),
-            GaugeText::Ellipsoid(g, m) => {
-                f(&EllipsoidGauge::new(v(g), SMatrix::<T, N, N>::from_fn(|i, j| T::of(m[i][j]))).unwrap())
+            UnitText::Ball(r) => f(&Ball::new(T::of(*r)).unwrap()),
+            UnitText::Box(g) => f(&UnitBox::new(v(g)).unwrap()),
+            UnitText::Cross(g) => f(&CrossPolytope::new(v(g)).unwrap()),
+            UnitText::Ellipsoid(g, m) => {
+                f(&UnitEllipsoid::new(v(g), SMatrix::<T, N, N>::from_fn(|i, j| T::of(m[i][j]))).unwrap())
             }
-            GaugeText::Segment(g) => f(&Segment::new(v(g)).unwrap()),
-            GaugeText::Vertices(p) => {
+            UnitText::Segment(g) => f(&Segment::new(v(g)).unwrap()),
+            UnitText::Vertices(p) => {
                 let points: Vec<[T; N]> = p.iter().map(|p| p.map(T::of)).collect();
                 f(&Vertices::new(&points).unwrap())
             }
-            GaugeText::Closure(g) => {
+            UnitText::Closure(g) => {
                 let g = v(g);
                 let size = g.iter().fold(T::zero(), |s, &x| s + x);
                 let value =
                     |u: &Vector<T, N>| Ok(u.iter().zip(g.iter()).fold(T::zero(), |s, (&u, &g)| s + u.abs() * g));
-                f(&GaugeFn::new(value, T::count(N + 2) * T::ROUNDOFF * size).unwrap())
+                f(&UnitSetFn::new(value, T::count(N + 2) * T::ROUNDOFF * size).unwrap())
             }
         }
     }
 }
 
 /// Directions to hold a bracket against: random ones, axes, and a walk downhill from the reported one.
-fn opponents<const N: usize>(
-    set: &SetText<N>,
-    gauge: &GaugeText<N>,
-    first: [f64; N],
-    dice: &mut Dice,
-) -> Vec<[f64; N]> {
+fn opponents<const N: usize>(set: &SetText<N>, unit: &UnitText<N>, first: [f64; N], dice: &mut Dice) -> Vec<[f64; N]> {
     let mut all = vec![first];
     for i in 0..N {
         for s in [1.0, -1.0] {
@@ -770,7 +765,7 @@ fn opponents<const N: usize>(
     all.extend((0..20).map(|_| dice.direction::<N>()));
     let quotient = |u: &[f64; N]| {
         let u = wide(u);
-        let (top, bottom) = (set.value(&u).hi, gauge.value(&u).hi);
+        let (top, bottom) = (set.value(&u).hi, unit.value(&u).hi);
         if top < 0.0 { top } else { top / bottom }
     };
     let mut best = all.iter().map(|u| (quotient(u), *u)).filter(|b| !b.0.is_nan()).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -799,14 +794,14 @@ fn opponents<const N: usize>(
 
 fn run_general<T: Real, const N: usize>(
     set: &SetText<N>,
-    gauge: &GaugeText<N>,
+    unit: &UnitText<N>,
     dice: &mut Dice,
     runs: usize,
     ledger: &mut Ledger,
 ) {
     let size = set.size();
     let blur = BLUR * size;
-    let euclidean = matches!(gauge, GaugeText::Ball(_));
+    let euclidean = matches!(unit, UnitText::Ball(_));
     for run in 0..runs {
         let (mut options, (vertices, facets)) = if run == 0 {
             (Options::default(), (128, 1024))
@@ -828,8 +823,8 @@ fn run_general<T: Real, const N: usize>(
         };
         let interrupt: Option<&dyn Fn() -> bool> = if run > 0 && dice.chance(0.3) { Some(&interrupt) } else { None };
         let mut memory = Memory::new::<T, N>(vertices, facets);
-        let answer = set
-            .with::<T, _>(|a| gauge.with::<T, _>(|q| memory.solver::<T, N>().solve_until(a, q, &options, interrupt)));
+        let answer =
+            set.with::<T, _>(|a| unit.with::<T, _>(|q| memory.solver::<T, N>().solve_until(a, q, &options, interrupt)));
         let seen = Seen::from(&answer);
         let tell = format!(
             "run {run}, N = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, {options:?}, deadline {:?}\n{seen:?} {:?}, {} cones, {} splits\ndirection {:?}",
@@ -852,7 +847,7 @@ fn run_general<T: Real, const N: usize>(
         let bounded = seen.upper < T::HUGE.to_f64();
         let n: [f64; N] = std::array::from_fn(|i| answer.direction[i].to_f64());
         let u = wide(&n);
-        let (top, bottom, length) = (set.value(&u), gauge.value(&u), norm(&u));
+        let (top, bottom, length) = (set.value(&u), unit.value(&u), norm(&u));
         if bounded {
             let proof = if seen.upper < 0.0 && !euclidean {
                 top - Dd::new(seen.upper) * length
@@ -865,12 +860,12 @@ fn run_general<T: Real, const N: usize>(
             }
         }
         if seen.lower > f64::MIN {
-            for u in opponents(set, gauge, n, dice) {
+            for u in opponents(set, unit, n, dice) {
                 let w = wide(&u);
-                let (top, bottom, length) = (set.value(&w), gauge.value(&w), norm(&w));
+                let (top, bottom, length) = (set.value(&w), unit.value(&w), norm(&w));
                 let slack = blur + 1e-26 * (seen.lower * bottom.hi).abs();
                 // Outside, d is minus the distance (in units of the ball); inside, the quotient.
-                let unit = if let GaugeText::Ball(r) = gauge { Dd::new(*r) } else { Dd::new(1.0) };
+                let unit = if let UnitText::Ball(r) = unit { Dd::new(*r) } else { Dd::new(1.0) };
                 let wrong = if top.hi < -slack {
                     (Dd::new(seen.lower) * unit * length - top).hi > slack
                 } else {
@@ -889,17 +884,17 @@ fn run_general<T: Real, const N: usize>(
 }
 
 fn fuzz_general<const N: usize>(dice: &mut Dice) {
-    let (mut set, mut gauge) = (SetText::<N>::random(dice), GaugeText::<N>::random(dice));
+    let (mut set, mut unit) = (SetText::<N>::random(dice), UnitText::<N>::random(dice));
     let single = dice.chance(0.5);
     if single {
-        (set, gauge) = (set.rounded(), gauge.rounded());
+        (set, unit) = (set.rounded(), unit.rounded());
     }
     let place = CURRENT.lock().unwrap().0.clone();
-    now_at(format!("{place}\nset = {set:?}\ngauge = {gauge:?}"));
+    now_at(format!("{place}\nset = {set:?}\nunit = {unit:?}"));
     let mut ledger = Ledger::new();
-    run_general::<f64, N>(&set, &gauge, dice, 3, &mut ledger);
+    run_general::<f64, N>(&set, &unit, dice, 3, &mut ledger);
     if single {
-        run_general::<f32, N>(&set, &gauge, dice, 2, &mut ledger);
+        run_general::<f32, N>(&set, &unit, dice, 2, &mut ledger);
     }
 }
 
@@ -959,11 +954,11 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
         extent: T::of(odd(dice, 5.0)),
         error: T::of(odd(dice, 1e-15)),
     };
-    let fail_gauge = dice.chance(0.3);
+    let fail_unit = dice.chance(0.3);
     let after = Cell::new(dice.below(40));
     let bad_value = dice.pick(&[f64::NAN, f64::INFINITY, -1.0, 0.0, 1e300]);
     let fail = dice.chance(0.3);
-    let gauge_error = T::of(dice.pick(&[0.0, 1e-15, 1e-3, 10.0]));
+    let unit_error = T::of(dice.pick(&[0.0, 1e-15, 1e-3, 10.0]));
     let value = move |u: &Vector<T, N>| {
         if after.get() > 0 {
             after.set(after.get() - 1);
@@ -979,7 +974,7 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
         options.threshold = Some(T::of(dice.pick(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY])));
     }
     let text = format!(
-        "{}\nN = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, half {:?}, bad support {} after {}, radius {:?}, extent {:?}, error {:?}, bad gauge {fail_gauge} ({bad_value}, fail {fail}, error {gauge_error:?}), {options:?}",
+        "{}\nN = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, half {:?}, bad support {} after {}, radius {:?}, extent {:?}, error {:?}, bad unit set {fail_unit} ({bad_value}, fail {fail}, error {unit_error:?}), {options:?}",
         CURRENT.lock().unwrap().0,
         T::ROUNDOFF.to_f64(),
         set.half,
@@ -991,9 +986,9 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
     );
     now_at(text);
     let mut memory = Memory::new::<T, N>(vertices, facets);
-    let answer = if fail_gauge {
-        let gauge = GaugeFn::new(value, gauge_error).unwrap();
-        memory.solver::<T, N>().solve(&set, &gauge, &options)
+    let answer = if fail_unit {
+        let unit = UnitSetFn::new(value, unit_error).unwrap();
+        memory.solver::<T, N>().solve(&set, &unit, &options)
     } else {
         memory.solver::<T, N>().solve(&set, &Ball::unit(), &options)
     };
@@ -1001,7 +996,7 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
     // Lies have no true bracket; but no NaN, nor an empty one, comes out, and failures are told.
     if seen.lower.is_nan() || seen.upper.is_nan() || seen.lower > seen.upper {
         let lying = set.kind >= 3
-            || fail_gauge
+            || fail_unit
             || !(set.error >= T::zero())
             || !(set.radius >= T::zero())
             || !set.extent.finite();

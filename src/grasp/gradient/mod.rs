@@ -157,7 +157,7 @@ impl<T: Real> Refined<'_, T> {
         }
         let u = &self.answer.direction;
         let g = frame.contact_map(contact).tr_mul(u);
-        let scale = contact.force_cap() * share.weight / self.answer.gauge;
+        let scale = contact.force_cap() * share.weight / self.answer.unit;
 
         // The force is S (1, used).
         let used: [T; 3] = core::array::from_fn(|i| if radii[i] > zero { force[i + 1] / radii[i] } else { zero });
@@ -191,7 +191,7 @@ impl<T: Real> Refined<'_, T> {
             normal: rotation.cross(n),
             mu: (rest[1] * used[0] + rest[2] * used[1]) * scale,
             mus: rest[3] * used[2] * scale / frame.torque_scale(),
-            force_cap: g.dot(&force) * share.weight / self.answer.gauge,
+            force_cap: g.dot(&force) * share.weight / self.answer.unit,
             jacobian: by_jacobian,
         }))
     }

@@ -36,7 +36,7 @@ impl<T: Real> Problem<'_, '_, T> {
     pub fn equations(&self, at: &Iterate<T>) -> Option<Equations<T>> {
         let share = self.mapping(&at.u)?;
         let mut balance = share * -at.d;
-        let mut hessian = self.gauge_hessian(&at.u)? * -at.d;
+        let mut hessian = self.unit_hessian(&at.u)? * -at.d;
         let level = at.d * share.dot(&at.u);
         let mut rows = Vec::new();
         for tie in &at.ties {
@@ -77,7 +77,7 @@ impl<T: Real> Problem<'_, '_, T> {
     /// Newton's method for u, d and the multipliers, in the plane u . near = 1.
     pub fn newton(&self, near: &Vector6<T>, ties: Ties<T>) -> Option<Iterate<T>> {
         let (ratio, _) = self.ratio(near)?;
-        let mut at = Iterate { u: *near, d: ratio / self.size * self.gauge, ties };
+        let mut at = Iterate { u: *near, d: ratio / self.size * self.unit, ties };
         let l1 = self.set.norm() == Norm::L1;
         let mut last = false;
         for _ in 0..STEPS {

@@ -4,25 +4,25 @@ use super::super::span::Subspace;
 use super::super::wrench_set::WrenchSet;
 use super::ties::{Matrix6, Vector6};
 use crate::math::{Vector, finite, norm};
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::scalar::Real;
 use crate::support::Support;
 
-/// The problem in units of its own size: W divided by `size`, Q by `gauge`.
+/// The problem in units of its own size: W divided by `size`, Q by `unit`.
 pub(super) struct Problem<'p, 'a, T> {
     pub set: &'p WrenchSet<'a, T>,
-    pub q: &'p dyn Gauge<T, 6>,
+    pub q: &'p dyn UnitSet<T, 6>,
     /// The projection onto the span of W.
     pub projector: Matrix6<T>,
     pub span: Option<Subspace<T>>,
     pub size: T,
-    pub gauge: T,
+    pub unit: T,
 }
 
 impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
     pub fn new(
         set: &'p WrenchSet<'a, T>,
-        q: &'p dyn Gauge<T, 6>,
+        q: &'p dyn UnitSet<T, 6>,
         span: Option<Subspace<T>>,
         near: &Vector6<T>,
     ) -> Option<Self> {
@@ -32,19 +32,19 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
                 sum + axis * axis.transpose()
             })
         });
-        let (size, gauge) = (set.extent(), norm(&q.mapping(near)?));
-        let usable = size > T::zero() && size.finite() && gauge > T::zero() && gauge.finite();
-        usable.then_some(Self { set, q, projector, span, size, gauge })
+        let (size, unit) = (set.extent(), norm(&q.mapping(near)?));
+        let usable = size > T::zero() && size.finite() && unit > T::zero() && unit.finite();
+        usable.then_some(Self { set, q, projector, span, size, unit })
     }
 
     /// The projection of s_Q(u).
     pub fn mapping(&self, u: &Vector6<T>) -> Option<Vector6<T>> {
-        let point = self.projector * self.q.mapping(u)? / self.gauge;
+        let point = self.projector * self.q.mapping(u)? / self.unit;
         finite(&point).then_some(point)
     }
 
     /// The Hessian of h_Q in the span, by central differences.
-    pub fn gauge_hessian(&self, u: &Vector6<T>) -> Option<Matrix6<T>> {
+    pub fn unit_hessian(&self, u: &Vector6<T>) -> Option<Matrix6<T>> {
         let h = T::ROUNDOFF.root().root();
         let mut hessian = Matrix6::zeros();
         for i in 0..6 {
@@ -81,8 +81,8 @@ impl<'p, 'a, T: Real> Problem<'p, 'a, T> {
 
     /// h_W(u) / h_Q(u), and h_Q(u), in the caller's units.
     pub fn ratio(&self, u: &Vector6<T>) -> Option<(T, T)> {
-        let gauge = self.q.value(u).ok()?;
-        let ratio = self.set.value(u) / gauge;
-        (gauge > T::zero() && ratio.finite()).then_some((ratio, gauge))
+        let unit = self.q.value(u).ok()?;
+        let ratio = self.set.value(u) / unit;
+        (unit > T::zero() && ratio.finite()).then_some((ratio, unit))
     }
 }

@@ -32,7 +32,7 @@ use super::super::wrench_set::{Norm, WrenchSet};
 use super::problem::Problem;
 use super::ties::{Kind, Part, Tie, Ties, tip};
 use crate::math::{Vector, norm};
-use crate::qset::Gauge;
+use crate::qset::UnitSet;
 use crate::query::answer::Answer;
 use crate::scalar::Real;
 
@@ -42,7 +42,7 @@ pub enum Kink {
     /// Another direction bounds d as tightly: the minimiser is not unique.
     Rival,
     /// Two or more points of Q touch the boundary of W.
-    Gauge,
+    UnitSet,
     /// No minimum with strict inequalities and regular equations was found near the answer's direction: a contact is just
     /// about to carry load, contacts share it in more than one way, h_W / h_Q is constant along a curve, or the answer was
     /// too far from a minimum.
@@ -84,7 +84,7 @@ pub struct Share<T> {
 #[derive(Clone)]
 pub struct Refined<'a, T> {
     /// The answer; `lower` is untouched, `upper` not worse. Where the minimum was found, `direction`, `support` (the point of W that
-    /// touches d Q) and `gauge` are those of it, and `rival` is what still is one.
+    /// touches d Q) and `unit` are those of it, and `rival` is what still is one.
     pub answer: Answer<T, 6>,
     /// Why there is no gradient; `None`: there is one.
     pub kink: Option<Kink>,
@@ -94,12 +94,12 @@ pub struct Refined<'a, T> {
 
 impl<'a, T: Real> Refined<'a, T> {
     /// Refines an answer of [`Solver::solve`](crate::Solver::solve) or [`solve_in_span`](crate::Solver::solve_in_span) for the same
-    /// `set` and `q`, to be called with a Q that has a [`mapping`](Gauge::mapping). The answer's bracket may be coarse, 1e-2
+    /// `set` and `q`, to be called with a Q that has a [`mapping`](UnitSet::mapping). The answer's bracket may be coarse, 1e-2
     /// is usually enough; but only the bracket tells how far another, deeper minimum may be below.
     ///
     /// Cost: some ten Newton steps for each guess, of some 12 calls of the mapping, m primitives of 200 operations, and one elimination
     /// with 13 unknowns.
-    pub fn new(set: &WrenchSet<'a, T>, q: &dyn Gauge<T, 6>, answer: &Answer<T, 6>) -> Self {
+    pub fn new(set: &WrenchSet<'a, T>, q: &dyn UnitSet<T, 6>, answer: &Answer<T, 6>) -> Self {
         let mut refined = Self { answer: answer.clone(), kink: Some(Kink::Degenerate), set: *set, ties: Ties::new() };
         if !(answer.lower > T::zero()) {
             refined.kink = Some(Kink::NotClosed);
@@ -128,7 +128,7 @@ impl<'a, T: Real> Refined<'a, T> {
         refined.answer.rival = refined.answer.rival.or_else(|| problem.mirror_image(&best.u));
         refined.kink = match refined.answer.rival {
             Some(_) => Some(Kink::Rival),
-            None if !best.sharp => Some(Kink::Gauge),
+            None if !best.sharp => Some(Kink::UnitSet),
             None => None,
         };
         problem.conclude(&best, &mut refined.answer);

@@ -244,16 +244,16 @@ impl<T: Real> Problem<'_, '_, T> {
 
     /// Writes the minimum into the answer.
     pub fn conclude(&self, minimum: &Minimum<T>, answer: &mut Answer<T, 6>) {
-        let Ok(gauge) = self.q.value(&minimum.u) else { return };
+        let Ok(unit) = self.q.value(&minimum.u) else { return };
         let bounds = Bounds { support_error: self.set.error(), radius: T::zero(), dimension: 6, unknown_extent: false };
         let height = self.set.value(&minimum.u);
-        let upper = bounds.upper(height, bounds.margin(self.size), gauge, self.q.error());
+        let upper = bounds.upper(height, bounds.margin(self.size), unit, self.q.error());
         // What the span's basis is off by is not known here.
         if answer.dimension == 6 {
             answer.upper = answer.upper.at_most(upper.at_least(answer.lower));
         }
         answer.direction = minimum.u;
         answer.support = minimum.support;
-        answer.gauge = gauge;
+        answer.unit = unit;
     }
 }

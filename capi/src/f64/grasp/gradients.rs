@@ -6,8 +6,8 @@
 use super::super::super::generic::{aligned, array, flag, known_size, padded, shared};
 use super::super::super::grasp::{from_contact, from_grasp, kink, qdist_kink};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::super::query::{qdist_result_f64, to_answer};
+use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
 use super::wrenches::qdist_wrenches_f64;
 use qdist::grasp::{ContactGradient, GraspError, HandContact, MAX_JOINTS, Refined};
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn qdist_grasp_gradients_f64(
     frame: *const qdist_wrench_frame_f64,
     active: u32,
     rank_tolerance: f64,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     result: *const qdist_result_f64,
     refined: *mut qdist_refined_f64,
     gradients: *mut qdist_contact_gradient_f64,
@@ -80,13 +80,13 @@ pub unsafe extern "C" fn qdist_grasp_gradients_f64(
             known_size((&raw const (*refined).struct_size).read(), size_of::<qdist_refined_f64>())?;
             let set = shared(wrenches)?.checked()?;
             let contacts = array(contacts, Some(count as usize))?;
-            (set, contacts, shared(frame)?.checked()?, CheckedGauge::new::<6>(q)?, shared(result)?)
+            (set, contacts, shared(frame)?.checked()?, CheckedUnit::new::<6>(q)?, shared(result)?)
         };
         known_size(result.struct_size, size_of::<qdist_result_f64>())?;
         if set.contributions().len() != contacts.len() {
             return Err(QDIST_ERROR_ARGUMENT);
         }
-        let found = Refined::new(&set, q.gauge(), &to_answer(result)?);
+        let found = Refined::new(&set, q.unit(), &to_answer(result)?);
         let gradient = |index: usize, contact: &qdist_contact_f64| {
             let hand = contact.of_hand()?;
             let hand = if active { hand } else { HandContact { jacobian: None, ..hand } };

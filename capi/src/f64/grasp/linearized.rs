@@ -14,8 +14,8 @@ use super::super::super::grasp::{
 use super::super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_FRICTION, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status,
 };
-use super::super::gauges::qdist_segment_gauge_f64;
 use super::super::sets::{qdist_set_f64, room};
+use super::super::unit_sets::qdist_segment_unit_f64;
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use core::ffi::c_void;
 use qdist::grasp::{
@@ -24,7 +24,7 @@ use qdist::grasp::{
 };
 use qdist::internal::one_by_one;
 use qdist::internal::{opposed, usable};
-use qdist::qset::Gauge;
+use qdist::qset::UnitSet;
 use qdist::support::{Failure, Support};
 use qdist::{Real, Vector};
 
@@ -460,7 +460,7 @@ pub unsafe extern "C" fn qdist_pyramid_wrenches_support_f64(
 pub unsafe extern "C" fn qdist_opposed_mean_f64(
     pyramids: *const qdist_pyramid_f64,
     count: u32,
-    segment: *mut qdist_segment_gauge_f64,
+    segment: *mut qdist_segment_unit_f64,
 ) -> qdist_status {
     let make = || {
         aligned(segment)?;
@@ -472,7 +472,7 @@ pub unsafe extern "C" fn qdist_opposed_mean_f64(
         }
         let found = opposed(edges()).ok_or(QDIST_ERROR_ARGUMENT)?;
         // SAFETY: checked.
-        unsafe { put(segment, qdist_segment_gauge_f64 { end: found.vertex(0).into(), dimension: 6 }) };
+        unsafe { put(segment, qdist_segment_unit_f64 { end: found.vertex(0).into(), dimension: 6 }) };
         Ok(())
     };
     status(make())

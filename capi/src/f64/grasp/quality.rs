@@ -7,9 +7,9 @@ use super::super::super::generic::{aligned, array, gaps, known_size, padded, put
 use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
 use super::super::super::handle::{self, qdist_solver};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
-use super::super::gauges::{CheckedGauge, qdist_gauge_f64};
 use super::super::query::{convert, from_answer, qdist_options_f64, qdist_result_f64};
 use super::super::sets::qdist_set_f64;
+use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use super::wrenches::behind;
 use qdist::grasp::Closure;
 use qdist::support::Support;
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn qdist_best_of6_f64(
     solver: *mut qdist_solver,
     sets: *const qdist_set_f64,
     count: u32,
-    q: *const qdist_gauge_f64,
+    q: *const qdist_unit_f64,
     options: *const qdist_options_f64,
     best: *mut qdist_best_f64,
 ) -> qdist_status {
@@ -106,11 +106,11 @@ pub unsafe extern "C" fn qdist_best_of6_f64(
             known_size((&raw const (*best).result.struct_size).read(), size_of::<qdist_result_f64>())?;
             sets.iter().try_for_each(|set| set.checked::<6>().map(|_| ()))?;
             let (options, deadline) = convert::<6>(options)?;
-            (sets, solver, CheckedGauge::new::<6>(q)?, options, deadline)
+            (sets, solver, CheckedUnit::new::<6>(q)?, options, deadline)
         };
         // SAFETY: all have been checked.
         let checked = sets.iter().filter_map(|set| unsafe { set.checked::<6>() }.ok());
-        let found = deadline.during(|interrupt| solver.best_of_until(checked, q.gauge(), &options, interrupt));
+        let found = deadline.during(|interrupt| solver.best_of_until(checked, q.unit(), &options, interrupt));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
         overflow(found.answer.failure)?;
         let made = qdist_best_f64 {

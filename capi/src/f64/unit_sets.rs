@@ -1,11 +1,11 @@
-//! GAUGE SETS
+//! UNIT SETS
 //!
 //! What one unit of depth means in each direction: a convex set Q that contains the origin, known by its support function
 //! h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
-//! ordinary Euclidean depth. The structs and lists must outlive the gauge that is made of them.
+//! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them.
 
 use super::super::generic::{
-    CallbackGauge, MAX_DIMENSION, Parts, aligned, array, coordinates, dimension, dot, farthest, finite, first, gaps,
+    CallbackUnit, MAX_DIMENSION, Parts, aligned, array, coordinates, dimension, dot, farthest, finite, first, gaps,
     in_range, largest, length, mirrored_always, padded, put, reach, semi_axes, shared,
 };
 use super::super::status::{
@@ -15,32 +15,32 @@ use super::super::symmetry::qdist_mirrored;
 use super::points::qdist_points_f64;
 use core::ffi::c_void;
 use qdist::Real;
-use qdist::qset::{Ball, Gauge};
+use qdist::qset::{Ball, UnitSet};
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.
-pub type qdist_gauge_value_f64 = Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64) -> f64>;
+pub type qdist_unit_value_f64 = Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64) -> f64>;
 
 /// Writes a point q of Q with direction . q = h_Q(direction) to `point`: where the plane touches Q. Returns 0, or anything else where
 /// that is not known.
-pub type qdist_gauge_point_f64 =
+pub type qdist_unit_point_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
 
 /// Writes point number `index` < vertex_count to `point`. Returns 0, or a code that ends the query, as that of a support function
 /// does. Coordinates that are not finite end it too.
-pub type qdist_gauge_vertex_f64 = Option<unsafe extern "C" fn(user: *mut c_void, index: u32, point: *mut f64) -> i32>;
+pub type qdist_unit_vertex_f64 = Option<unsafe extern "C" fn(user: *mut c_void, index: u32, point: *mut f64) -> i32>;
 
-/// A gauge set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+/// A unit set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
 /// true, or the bracket is not.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct qdist_gauge_f64 {
-    pub value: qdist_gauge_value_f64,
+pub struct qdist_unit_f64 {
+    pub value: qdist_unit_value_f64,
     /// Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
-    pub point: qdist_gauge_point_f64,
+    pub point: qdist_unit_point_f64,
     /// With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
     /// a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
-    pub vertex: qdist_gauge_vertex_f64,
+    pub vertex: qdist_unit_vertex_f64,
     /// Which mirror images of Q are Q itself.
     pub mirrored: qdist_mirrored,
     /// First argument of all functions.
@@ -57,12 +57,12 @@ pub struct qdist_gauge_f64 {
     pub dimension: u32,
 }
 
-gaps!(qdist_gauge_f64, user..extent, dimension..);
+gaps!(qdist_unit_f64, user..extent, dimension..);
 
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct qdist_ellipsoid_gauge_f64 {
+pub struct qdist_ellipsoid_unit_f64 {
     /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
     /// Row-major, `dimension` x `dimension`; NULL: identity.
@@ -74,7 +74,7 @@ pub struct qdist_ellipsoid_gauge_f64 {
 /// The box |x_i| <= half[i]; sizes >= 0, not all zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct qdist_box_gauge_f64 {
+pub struct qdist_box_unit_f64 {
     /// The first `dimension` numbers count.
     pub half: [f64; 6],
     /// 2 to 6.
@@ -84,7 +84,7 @@ pub struct qdist_box_gauge_f64 {
 /// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct qdist_cross_gauge_f64 {
+pub struct qdist_cross_unit_f64 {
     /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
     /// 2 to 6.
@@ -95,32 +95,32 @@ pub struct qdist_cross_gauge_f64 {
 /// for a ray.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct qdist_segment_gauge_f64 {
+pub struct qdist_segment_unit_f64 {
     /// The first `dimension` numbers count.
     pub end: [f64; 6],
     /// 2 to 6.
     pub dimension: u32,
 }
 
-gaps!(qdist_segment_gauge_f64, dimension..);
+gaps!(qdist_segment_unit_f64, dimension..);
 
 /// Makes the ball of this radius > 0 around the origin, of any dimension.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_ball_f64(gauge: *mut qdist_gauge_f64, radius: f64) -> qdist_status {
+pub unsafe extern "C" fn qdist_unit_ball_f64(unit: *mut qdist_unit_f64, radius: f64) -> qdist_status {
     let fill = || {
         semi_axes(&[radius])?;
-        let ball = qdist_gauge_f64 { extent: radius, ball_radius: radius, inner_radius: radius, ..UNKNOWN };
+        let ball = qdist_unit_f64 { extent: radius, ball_radius: radius, inner_radius: radius, ..UNKNOWN };
         // SAFETY: what the header asks of the caller.
-        unsafe { write(gauge, ball) }
+        unsafe { write(unit, ball) }
     };
     status(fill())
 }
 
 /// Makes an ellipsoid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_ellipsoid_f64(
-    gauge: *mut qdist_gauge_f64,
-    shape: *const qdist_ellipsoid_gauge_f64,
+pub unsafe extern "C" fn qdist_unit_ellipsoid_f64(
+    unit: *mut qdist_unit_f64,
+    shape: *const qdist_ellipsoid_unit_f64,
 ) -> qdist_status {
     let fill = || {
         // SAFETY: what the header asks of the caller.
@@ -134,8 +134,8 @@ pub unsafe extern "C" fn qdist_gauge_ellipsoid_f64(
                 Some(rotation) => orthonormal(rotation, axes.len()).map(|()| least * 0.999)?,
                 None => least,
             };
-            let parts = qdist_gauge_f64 {
-                value: Some(qdist_ellipsoid_gauge_value_f64),
+            let parts = qdist_unit_f64 {
+                value: Some(qdist_ellipsoid_unit_value_f64),
                 point: Some(ellipsoid_point),
                 mirrored: Some(ellipsoid_mirrored),
                 extent: length(largest(axes) * 1.001)?,
@@ -143,7 +143,7 @@ pub unsafe extern "C" fn qdist_gauge_ellipsoid_f64(
                 dimension: ellipsoid.dimension,
                 ..UNKNOWN
             };
-            made(gauge, shape, parts)
+            made(unit, shape, parts)
         }
     };
     status(fill())
@@ -151,9 +151,9 @@ pub unsafe extern "C" fn qdist_gauge_ellipsoid_f64(
 
 /// Makes a box.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_box_f64(
-    gauge: *mut qdist_gauge_f64,
-    shape: *const qdist_box_gauge_f64,
+pub unsafe extern "C" fn qdist_unit_box_f64(
+    unit: *mut qdist_unit_f64,
+    shape: *const qdist_box_unit_f64,
 ) -> qdist_status {
     let fill = || {
         // SAFETY: what the header asks of the caller.
@@ -161,8 +161,8 @@ pub unsafe extern "C" fn qdist_gauge_box_f64(
             let cuboid = shared(shape)?;
             let half = cuboid.half()?;
             semi_axes(half)?;
-            let parts = qdist_gauge_f64 {
-                value: Some(qdist_box_gauge_value_f64),
+            let parts = qdist_unit_f64 {
+                value: Some(qdist_box_unit_value_f64),
                 point: Some(box_point),
                 vertex: Some(box_vertex),
                 mirrored: Some(mirrored_always),
@@ -172,7 +172,7 @@ pub unsafe extern "C" fn qdist_gauge_box_f64(
                 dimension: cuboid.dimension,
                 ..UNKNOWN
             };
-            made(gauge, shape, parts)
+            made(unit, shape, parts)
         }
     };
     status(fill())
@@ -180,9 +180,9 @@ pub unsafe extern "C" fn qdist_gauge_box_f64(
 
 /// Makes a cross-polytope.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_cross_f64(
-    gauge: *mut qdist_gauge_f64,
-    shape: *const qdist_cross_gauge_f64,
+pub unsafe extern "C" fn qdist_unit_cross_f64(
+    unit: *mut qdist_unit_f64,
+    shape: *const qdist_cross_unit_f64,
 ) -> qdist_status {
     let fill = || {
         // SAFETY: what the header asks of the caller.
@@ -194,8 +194,8 @@ pub unsafe extern "C" fn qdist_gauge_cross_f64(
             let least = least(axes);
             let sum = axes.iter().fold(0.0, |sum, &x| sum + (least / x) * (least / x));
             let slack = f64::count(4 * MAX_DIMENSION) * f64::ROUNDOFF;
-            let parts = qdist_gauge_f64 {
-                value: Some(qdist_cross_gauge_value_f64),
+            let parts = qdist_unit_f64 {
+                value: Some(qdist_cross_unit_value_f64),
                 point: Some(cross_point),
                 vertex: Some(cross_vertex),
                 mirrored: Some(mirrored_always),
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn qdist_gauge_cross_f64(
                 dimension: cross.dimension,
                 ..UNKNOWN
             };
-            made(gauge, shape, parts)
+            made(unit, shape, parts)
         }
     };
     status(fill())
@@ -213,9 +213,9 @@ pub unsafe extern "C" fn qdist_gauge_cross_f64(
 
 /// Makes a segment.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_segment_f64(
-    gauge: *mut qdist_gauge_f64,
-    shape: *const qdist_segment_gauge_f64,
+pub unsafe extern "C" fn qdist_unit_segment_f64(
+    unit: *mut qdist_unit_f64,
+    shape: *const qdist_segment_unit_f64,
 ) -> qdist_status {
     let fill = || {
         // SAFETY: what the header asks of the caller.
@@ -226,8 +226,8 @@ pub unsafe extern "C" fn qdist_gauge_segment_f64(
             if !(largest(end) > 0.0) {
                 return Err(QDIST_ERROR_ARGUMENT);
             }
-            let parts = qdist_gauge_f64 {
-                value: Some(qdist_segment_gauge_value_f64),
+            let parts = qdist_unit_f64 {
+                value: Some(qdist_segment_unit_value_f64),
                 point: Some(segment_point),
                 vertex: Some(segment_vertex),
                 extent: length(reach(end, end.len()))?,
@@ -235,7 +235,7 @@ pub unsafe extern "C" fn qdist_gauge_segment_f64(
                 dimension: segment.dimension,
                 ..UNKNOWN
             };
-            made(gauge, shape, parts)
+            made(unit, shape, parts)
         }
     };
     status(fill())
@@ -243,8 +243,8 @@ pub unsafe extern "C" fn qdist_gauge_segment_f64(
 
 /// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_gauge_vertices_f64(
-    gauge: *mut qdist_gauge_f64,
+pub unsafe extern "C" fn qdist_unit_vertices_f64(
+    unit: *mut qdist_unit_f64,
     shape: *const qdist_points_f64,
 ) -> qdist_status {
     let fill = || {
@@ -257,8 +257,8 @@ pub unsafe extern "C" fn qdist_gauge_vertices_f64(
             if !(largest(list) > 0.0) {
                 return Err(QDIST_ERROR_ARGUMENT);
             }
-            let parts = qdist_gauge_f64 {
-                value: Some(qdist_vertices_gauge_value_f64),
+            let parts = qdist_unit_f64 {
+                value: Some(qdist_vertices_unit_value_f64),
                 point: Some(vertices_point),
                 vertex: Some(vertices_vertex),
                 extent: length(reach(list, n))?,
@@ -266,19 +266,19 @@ pub unsafe extern "C" fn qdist_gauge_vertices_f64(
                 dimension: points.dimension,
                 ..UNKNOWN
             };
-            made(gauge, shape, parts)
+            made(unit, shape, parts)
         }
     };
     status(fill())
 }
 
-/// Support function of an ellipsoid gauge.
+/// Support function of an ellipsoid unit set.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_ellipsoid_gauge_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
+pub unsafe extern "C" fn qdist_ellipsoid_unit_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
     let value = || {
         // SAFETY: what the header asks of the caller.
         let (axes, rotation, u) = unsafe {
-            let (axes, rotation) = shared(user.cast::<qdist_ellipsoid_gauge_f64>().cast_const())?.parts()?;
+            let (axes, rotation) = shared(user.cast::<qdist_ellipsoid_unit_f64>().cast_const())?.parts()?;
             (axes, rotation, array(direction, Some(axes.len()))?)
         };
         // |D R^T u|, with the axes divided by the largest, so that squares stay in range.
@@ -297,13 +297,13 @@ pub unsafe extern "C" fn qdist_ellipsoid_gauge_value_f64(user: *mut c_void, dire
     or_nan(value())
 }
 
-/// Support function of a box gauge.
+/// Support function of a box unit set.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_box_gauge_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
+pub unsafe extern "C" fn qdist_box_unit_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
     let value = || {
         // SAFETY: what the header asks of the caller.
         let (half, u) = unsafe {
-            let shape = shared(user.cast::<qdist_box_gauge_f64>().cast_const())?;
+            let shape = shared(user.cast::<qdist_box_unit_f64>().cast_const())?;
             let half = shape.half()?;
             (half, array(direction, Some(half.len()))?)
         };
@@ -312,13 +312,13 @@ pub unsafe extern "C" fn qdist_box_gauge_value_f64(user: *mut c_void, direction:
     or_nan(value())
 }
 
-/// Support function of a cross-polytope gauge.
+/// Support function of a cross-polytope unit set.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_cross_gauge_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
+pub unsafe extern "C" fn qdist_cross_unit_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
     let value = || {
         // SAFETY: what the header asks of the caller.
         let (axes, u) = unsafe {
-            let shape = shared(user.cast::<qdist_cross_gauge_f64>().cast_const())?;
+            let shape = shared(user.cast::<qdist_cross_unit_f64>().cast_const())?;
             let axes = shape.semi_axes()?;
             (axes, array(direction, Some(axes.len()))?)
         };
@@ -327,13 +327,13 @@ pub unsafe extern "C" fn qdist_cross_gauge_value_f64(user: *mut c_void, directio
     or_nan(value())
 }
 
-/// Support function of a segment gauge.
+/// Support function of a segment unit set.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_segment_gauge_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
+pub unsafe extern "C" fn qdist_segment_unit_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
     let value = || {
         // SAFETY: what the header asks of the caller.
         let (end, u) = unsafe {
-            let shape = shared(user.cast::<qdist_segment_gauge_f64>().cast_const())?;
+            let shape = shared(user.cast::<qdist_segment_unit_f64>().cast_const())?;
             let end = shape.end()?;
             (end, array(direction, Some(end.len()))?)
         };
@@ -342,9 +342,9 @@ pub unsafe extern "C" fn qdist_segment_gauge_value_f64(user: *mut c_void, direct
     or_nan(value())
 }
 
-/// Support function of a gauge of vertices.
+/// Support function of a unit set of vertices.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_vertices_gauge_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
+pub unsafe extern "C" fn qdist_vertices_unit_value_f64(user: *mut c_void, direction: *const f64) -> f64 {
     let value = || {
         // SAFETY: what the header asks of the caller.
         let (list, n, u) = unsafe {
@@ -358,7 +358,7 @@ pub unsafe extern "C" fn qdist_vertices_gauge_value_f64(user: *mut c_void, direc
     or_nan(value())
 }
 
-impl qdist_ellipsoid_gauge_f64 {
+impl qdist_ellipsoid_unit_f64 {
     /// Semi axes, and the rotation if there is one.
     ///
     /// # Safety
@@ -372,19 +372,19 @@ impl qdist_ellipsoid_gauge_f64 {
     }
 }
 
-impl qdist_box_gauge_f64 {
+impl qdist_box_unit_f64 {
     fn half(&self) -> Check<&[f64]> {
         first(&self.half, dimension(self.dimension)?)
     }
 }
 
-impl qdist_cross_gauge_f64 {
+impl qdist_cross_unit_f64 {
     fn semi_axes(&self) -> Check<&[f64]> {
         first(&self.semi_axes, dimension(self.dimension)?)
     }
 }
 
-impl qdist_segment_gauge_f64 {
+impl qdist_segment_unit_f64 {
     fn end(&self) -> Check<&[f64]> {
         first(&self.end, dimension(self.dimension)?)
     }
@@ -393,7 +393,7 @@ impl qdist_segment_gauge_f64 {
 /// Fills `point` with what `fill` makes of the shape behind `user` and the direction.
 ///
 /// # Safety
-/// Those of a gauge function: pointers that are neither NULL nor misaligned are valid, for as many numbers as `fill` asks for.
+/// Those of a unit set function: pointers that are neither NULL nor misaligned are valid, for as many numbers as `fill` asks for.
 unsafe fn point_of<'a, S: 'a>(
     user: *mut c_void,
     point: *mut f64,
@@ -413,7 +413,7 @@ unsafe fn point_of<'a, S: 'a>(
 unsafe extern "C" fn ellipsoid_point(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_ellipsoid_gauge_f64| {
+        point_of(user, point, |shape: &qdist_ellipsoid_unit_f64| {
             let (axes, rotation) = shape.parts()?;
             let n = axes.len();
             let u = array(direction, Some(n))?;
@@ -442,7 +442,7 @@ unsafe extern "C" fn ellipsoid_point(user: *mut c_void, direction: *const f64, p
 unsafe extern "C" fn ellipsoid_mirrored(user: *mut c_void, signs: u32) -> i32 {
     let ask = || {
         // SAFETY: what the header asks of the caller.
-        let (axes, rotation) = unsafe { shared(user.cast::<qdist_ellipsoid_gauge_f64>().cast_const())?.parts()? };
+        let (axes, rotation) = unsafe { shared(user.cast::<qdist_ellipsoid_unit_f64>().cast_const())?.parts()? };
         let n = axes.len();
         let stays = |matrix: &[f64], j: usize| {
             let touched = |flipped: bool| {
@@ -460,7 +460,7 @@ unsafe extern "C" fn ellipsoid_mirrored(user: *mut c_void, signs: u32) -> i32 {
 unsafe extern "C" fn box_point(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_box_gauge_f64| {
+        point_of(user, point, |shape: &qdist_box_unit_f64| {
             let half = shape.half()?;
             let u = array(direction, Some(half.len()))?;
             Ok((padded(half.iter().zip(u).map(|(&h, &x)| if x < 0.0 { -h } else { h })), half.len()))
@@ -472,7 +472,7 @@ unsafe extern "C" fn box_point(user: *mut c_void, direction: *const f64, point: 
 unsafe extern "C" fn box_vertex(user: *mut c_void, index: u32, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_box_gauge_f64| {
+        point_of(user, point, |shape: &qdist_box_unit_f64| {
             let half = shape.half()?;
             let mut code = index ^ (index >> 1);
             let corner = half.iter().map(|&h| {
@@ -488,7 +488,7 @@ unsafe extern "C" fn box_vertex(user: *mut c_void, index: u32, point: *mut f64) 
 unsafe extern "C" fn cross_point(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_cross_gauge_f64| {
+        point_of(user, point, |shape: &qdist_cross_unit_f64| {
             let axes = shape.semi_axes()?;
             let u = array(direction, Some(axes.len()))?;
             let best = axes.iter().zip(u).fold(0.0, |m: f64, (&s, &x)| m.at_least(s * x.abs()));
@@ -510,7 +510,7 @@ unsafe extern "C" fn cross_point(user: *mut c_void, direction: *const f64, point
 unsafe extern "C" fn cross_vertex(user: *mut c_void, index: u32, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_cross_gauge_f64| {
+        point_of(user, point, |shape: &qdist_cross_unit_f64| {
             let axes = shape.semi_axes()?;
             let (axis, _) = positive(axes).nth(index as usize / 2).ok_or(QDIST_ERROR_ARGUMENT)?;
             let sign = if index % 2 == 1 { -1.0 } else { 1.0 };
@@ -522,7 +522,7 @@ unsafe extern "C" fn cross_vertex(user: *mut c_void, index: u32, point: *mut f64
 unsafe extern "C" fn segment_point(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_segment_gauge_f64| {
+        point_of(user, point, |shape: &qdist_segment_unit_f64| {
             let end = shape.end()?;
             let ahead = dot(end, array(direction, Some(end.len()))?) > 0.0;
             // Behind, the origin touches the plane: no direction to look in.
@@ -534,7 +534,7 @@ unsafe extern "C" fn segment_point(user: *mut c_void, direction: *const f64, poi
 unsafe extern "C" fn segment_vertex(user: *mut c_void, _index: u32, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        point_of(user, point, |shape: &qdist_segment_gauge_f64| {
+        point_of(user, point, |shape: &qdist_segment_unit_f64| {
             shape.end().map(|end| (padded(end.iter().copied()), end.len()))
         })
     }
@@ -574,8 +574,8 @@ fn least(list: &[f64]) -> f64 {
     list.iter().fold(f64::HUGE, |least, &x| least.at_most(x))
 }
 
-/// A gauge that says nothing.
-const UNKNOWN: qdist_gauge_f64 = qdist_gauge_f64 {
+/// A unit set that says nothing.
+const UNKNOWN: qdist_unit_f64 = qdist_unit_f64 {
     value: None,
     point: None,
     vertex: None,
@@ -588,18 +588,18 @@ const UNKNOWN: qdist_gauge_f64 = qdist_gauge_f64 {
     dimension: 0,
 };
 
-/// A gauge of the caller that has passed the checks.
-pub(super) enum CheckedGauge {
+/// A unit set of the caller that has passed the checks.
+pub(super) enum CheckedUnit {
     Ball(Ball<f64>),
-    Other(CallbackGauge<f64>),
+    Other(CallbackUnit<f64>),
 }
 
-impl CheckedGauge {
+impl CheckedUnit {
     /// Checks the numbers for dimension `N`; NULL: the unit ball.
     ///
     /// # Safety
     /// If not NULL and aligned, `q` is valid for reads; for the life of the value its functions may be called in dimension `N`.
-    pub(super) unsafe fn new<const N: usize>(q: *const qdist_gauge_f64) -> Check<Self> {
+    pub(super) unsafe fn new<const N: usize>(q: *const qdist_unit_f64) -> Check<Self> {
         if q.is_null() {
             return Ok(Self::Ball(Ball::unit()));
         }
@@ -611,18 +611,18 @@ impl CheckedGauge {
         if length(q.ball_radius)? > 0.0 {
             return Ball::new(q.ball_radius).map(Self::Ball).map_err(from_shape);
         }
-        let &qdist_gauge_f64 { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count, .. } = q;
+        let &qdist_unit_f64 { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count, .. } = q;
         // SAFETY: the caller's promise.
         unsafe {
-            CallbackGauge::new::<N>(Parts { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count })
+            CallbackUnit::new::<N>(Parts { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count })
         }
         .map(Self::Other)
     }
 
-    pub(super) fn gauge<const N: usize>(&self) -> &dyn Gauge<f64, N> {
+    pub(super) fn unit<const N: usize>(&self) -> &dyn UnitSet<f64, N> {
         match self {
             Self::Ball(ball) => ball,
-            Self::Other(gauge) => gauge,
+            Self::Other(unit) => unit,
         }
     }
 
@@ -630,7 +630,7 @@ impl CheckedGauge {
     pub(super) fn code(&self, failure: i32) -> i32 {
         match self {
             Self::Ball(_) => failure,
-            Self::Other(gauge) => gauge.code(failure),
+            Self::Other(unit) => unit.code(failure),
         }
     }
 }
@@ -652,24 +652,24 @@ fn orthonormal(matrix: &[f64], n: usize) -> Check {
 }
 
 /// # Safety
-/// If not NULL and aligned, `gauge` is valid for writes.
-unsafe fn write(gauge: *mut qdist_gauge_f64, value: qdist_gauge_f64) -> Check {
-    aligned(gauge)?;
+/// If not NULL and aligned, `unit` is valid for writes.
+unsafe fn write(unit: *mut qdist_unit_f64, value: qdist_unit_f64) -> Check {
+    aligned(unit)?;
     // SAFETY: checked.
-    unsafe { put(gauge, value) };
+    unsafe { put(unit, value) };
     Ok(())
 }
 
-/// Fills a gauge that a struct and its functions make.
+/// Fills a unit set that a struct and its functions make.
 ///
 /// # Safety
 /// As for [`write`].
-unsafe fn made<S>(gauge: *mut qdist_gauge_f64, shape: *const S, parts: qdist_gauge_f64) -> Check {
+unsafe fn made<S>(unit: *mut qdist_unit_f64, shape: *const S, parts: qdist_unit_f64) -> Check {
     // SAFETY: the caller's promise.
-    unsafe { write(gauge, qdist_gauge_f64 { user: shape.cast_mut().cast(), ..parts }) }
+    unsafe { write(unit, qdist_unit_f64 { user: shape.cast_mut().cast(), ..parts }) }
 }
 
-/// How a gauge function says that its arguments are wrong.
+/// How a unit set function says that its arguments are wrong.
 fn or_nan(value: Check<f64>) -> f64 {
     value.unwrap_or(f64::NAN)
 }

@@ -6,7 +6,7 @@
 
 use qdist::Vector;
 use qdist::nalgebra::SMatrix;
-use qdist::qset::{Ball, BoxGauge, CrossPolytope, EllipsoidGauge, Gauge, Segment, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::ShapeError;
 
 use crate::Trouble;
@@ -55,8 +55,8 @@ impl Shape {
 #[derive(Clone, Debug)]
 enum Form {
     Ball(Ball<f64>),
-    Ellipsoid(Box<EllipsoidGauge<f64, 6>>),
-    Box(BoxGauge<f64, 6>),
+    Ellipsoid(Box<UnitEllipsoid<f64, 6>>),
+    Box(UnitBox<f64, 6>),
     CrossPolytope(CrossPolytope<f64, 6>),
     Segment(Segment<f64, 6>),
     Vertices(Vec<[f64; 6]>),
@@ -86,7 +86,7 @@ impl Q {
             Shape::Ellipsoid(sizes) => ellipsoid(sizes, &axes)?,
             Shape::Segment(end) => Form::Segment(Segment::new(combined(end, &axes)).map_err(words)?),
             Shape::Box(sizes) => match padded(sizes, &axes) {
-                Some(sizes) => Form::Box(BoxGauge::new(sizes).map_err(words)?),
+                Some(sizes) => Form::Box(UnitBox::new(sizes).map_err(words)?),
                 None => vertices(&corners(sizes)?, &axes)?,
             },
             Shape::CrossPolytope(sizes) => match padded(sizes, &axes) {
@@ -98,7 +98,7 @@ impl Q {
     }
 
     /// The support function.
-    pub fn gauge(&self) -> Result<Box<dyn Gauge<f64, 6> + '_>, Trouble> {
+    pub fn unit(&self) -> Result<Box<dyn UnitSet<f64, 6> + '_>, Trouble> {
         Ok(match &self.form {
             Form::Ball(q) => Box::new(*q),
             Form::Ellipsoid(q) => Box::new(**q),
@@ -159,10 +159,10 @@ impl Q {
             Shape::Segment(_) => self.segment(),
             Shape::Box(_) if matches!(self.form, Form::Box(_)) => {
                 let level = u.map(|x| x.abs() < 1e-6 * u.norm());
-                let corner = self.gauge().ok()?.mapping(u)?;
+                let corner = self.unit().ok()?.mapping(u)?;
                 Some(Vector::from_fn(|i, _| if level[i] { 0.0 } else { corner[i] }))
             }
-            _ => self.gauge().ok()?.mapping(u),
+            _ => self.unit().ok()?.mapping(u),
         }
     }
 
@@ -220,7 +220,7 @@ fn ellipsoid(sizes: &[f64], axes: &[Vector<f64, 6>]) -> Result<Form, Trouble> {
             rotation.set_column(k, &axis.normalize());
         }),
     }
-    EllipsoidGauge::new(semi, rotation).map(|q| Form::Ellipsoid(Box::new(q))).map_err(words)
+    UnitEllipsoid::new(semi, rotation).map(|q| Form::Ellipsoid(Box::new(q))).map_err(words)
 }
 
 fn vertices(points: &[Vec<f64>], axes: &[Vector<f64, 6>]) -> Result<Form, Trouble> {
@@ -275,7 +275,7 @@ mod tests {
         ];
         for (shape, want) in shapes(&sizes).into_iter().zip(want) {
             let q = Q::new(shape, Some(axes.clone())).unwrap();
-            assert!((q.gauge().unwrap().value(&u).unwrap() - want).abs() < 1e-13, "{q:?}");
+            assert!((q.unit().unwrap().value(&u).unwrap() - want).abs() < 1e-13, "{q:?}");
             let point = q.farthest(&u).unwrap();
             assert!((point.dot(&u) - want).abs() < 1e-13);
             // The wrench that is farthest along u is on the surface.
@@ -288,7 +288,7 @@ mod tests {
         let axis = |i: usize, length: f64| Vector::<f64, 6>::from_fn(|j, _| if i == j { length } else { 0.0 });
         let q = Q::new(Shape::Box(vec![1.0, 2.0]), Some(vec![axis(5, 1.0), axis(0, -3.0)])).unwrap();
         let u = Vector::from([1.0, 7.0, 0.0, 0.0, 0.0, 10.0]);
-        assert_eq!(q.gauge().unwrap().value(&u), Ok(16.0));
+        assert_eq!(q.unit().unwrap().value(&u), Ok(16.0));
         assert_eq!(q.farthest(&Vector::from([-1.0, 1.0, 0.0, 0.0, 0.0, 1e-9])), Some(axis(0, -6.0)));
         assert_eq!(q.reach(&axis(1, 1.0)), 0.0);
     }
