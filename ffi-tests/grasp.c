@@ -457,6 +457,70 @@ static void Q(finger_errors)(void) {
     CHECK(Q(qdist_set_finger_wrenches)(&set, NULL) == QDIST_ERROR_NULL);
 }
 
+/* A grasp that is open contains the origin on its boundary, by definition: so d is 0 and `lower` too, whatever made the set of it; and a segment
+ * into the set is as long as contact forces say. */
+static void Q(open_grasp)(qdist_solver *solver) {
+    static REAL edges[6 * 40];
+    const REAL identity[36] = {1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
+    const Q(qdist_layout) layout = {QDIST_LAYOUT_INSCRIBED, 8, 0};
+    const Q(qdist_segment_unit) ray = {{3, 0, 0, 0, 1, 0}, 6};
+    const REAL external[6] = {-3, 0, 0, 0, -1, 0};
+    Q(qdist_contact) contacts[3] = {Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(-1, 0.5, 0.1), Q(fingertip)(-1, 0.5, 0.1)};
+    Q(qdist_primitive) primitives[3];
+    Q(qdist_pyramid) pyramids[3];
+    Q(qdist_finger) finger;
+    uint32_t norm, k;
+    contacts[0].position[1] = 1, contacts[1].position[1] = -1, contacts[2].position[2] = 1;
+    CHECK(Q(qdist_passive_primitives)(contacts, 3, &Q(frame), primitives, NULL) == QDIST_OK);
+    CHECK(Q(qdist_pyramids)(contacts, 3, &Q(frame), &layout, edges, 40, pyramids, NULL) == QDIST_OK);
+    CHECK(Q(qdist_finger_init)(&finger, contacts, 3, NULL, QDIST_FORCE_MODEL_PASSIVE, &Q(frame), 0, NULL) == QDIST_OK);
+    for (norm = QDIST_L1; norm <= QDIST_LINF; ++norm) {
+        const Q(qdist_wrenches) w = {primitives, 3, norm};
+        const Q(qdist_pyramid_wrenches) p = {pyramids, 3, norm};
+        const Q(qdist_finger_wrenches) f = {&finger, 1, norm};
+        Q(qdist_set) sets[6];
+        const Q(qdist_pair) twice = {&sets[0], &sets[1], 6};
+        const Q(qdist_linear) stays = {&sets[0], identity, {0, 0, 0, 0, 0, 0}, 6, 6}, goes = {&sets[0], identity, {1, 0, 0, 0, 0, 0}, 6, 6};
+        Q(qdist_force_options) gap;
+        Q(qdist_forces) forces;
+        Q(qdist_result) result;
+        Q(qdist_set) apart;
+        Q(qdist_unit) q;
+        REAL shares[18];
+
+        CHECK(Q(qdist_set_wrenches)(&sets[0], &w) == QDIST_OK && Q(qdist_set_pyramid_wrenches)(&sets[1], &p) == QDIST_OK);
+        CHECK(Q(qdist_set_finger_wrenches)(&sets[2], &f) == QDIST_OK && Q(qdist_set_sum)(&sets[3], &twice) == QDIST_OK);
+        CHECK(Q(qdist_set_join)(&sets[4], &twice) == QDIST_OK && Q(qdist_set_linear)(&sets[5], &stays) == QDIST_OK);
+        for (k = 0; k < 6; ++k) {
+            CHECK(sets[k].contains_origin == 1);
+            result = Q(depth)(solver, &sets[k]);
+            CHECK(result.lower == 0 && result.upper >= 0 && result.upper < 20 * WIDTH);
+        }
+        /* What is not known is not said: of a difference of unlike sets, of a set that has moved; of a join with one, it is. */
+        CHECK(Q(qdist_set_linear)(&apart, &goes) == QDIST_OK && apart.contains_origin == 0);
+        sets[1] = apart;
+        CHECK(Q(qdist_set_sum)(&sets[3], &twice) == QDIST_OK && sets[3].contains_origin == 0);
+        CHECK(Q(qdist_set_join)(&sets[4], &twice) == QDIST_OK && sets[4].contains_origin == 1);
+        /* Without, the margin of rounding shows. */
+        apart = sets[0], apart.contains_origin = 0;
+        result = Q(depth)(solver, &apart);
+        CHECK(result.lower < 0 && result.upper >= 0);
+
+        /* A segment into the set: the inverse of the size of the forces. */
+        memset(&gap, 0, sizeof gap), memset(&forces, 0, sizeof forces), memset(&result, 0, sizeof result);
+        gap.struct_size = sizeof gap, gap.relative = (REAL)WIDTH, forces.struct_size = sizeof forces, result.struct_size = sizeof result;
+        CHECK(Q(qdist_unit_segment)(&q, &ray) == QDIST_OK);
+        CHECK(Q(qdist_contact_forces)(&w, NULL, external, &gap, shares, &forces) == QDIST_OK);
+        CHECK(Q(qdist_solve6)(solver, &sets[0], &q, NULL, &result) == QDIST_OK);
+        CHECK(result.lower <= 1 / (double)forces.lower && 1 / (double)forces.upper <= result.upper && result.iterations < 1000);
+        /* (In float the margin of rounding may be as large as what there is on the way.) */
+        CHECK(sizeof(REAL) == sizeof(float) || (result.lower > 0 && result.upper - result.lower <= WIDTH * result.upper));
+        sets[0].contains_origin = 2;
+        CHECK(Q(qdist_solve6)(solver, &sets[0], &q, NULL, &result) == QDIST_ERROR_ARGUMENT);
+        CHECK(Q(qdist_set_sum)(&sets[3], &twice) == QDIST_ERROR_ARGUMENT);
+    }
+}
+
 /* t such that t * end is on the boundary of the pyramids' set. */
 static Q(qdist_result) Q(shoot)(qdist_solver *solver, const Q(qdist_set) *set, double y, double z) {
     Q(qdist_segment_unit) segment = {{0, (REAL)y, (REAL)z, 0, 0, 0}, 6};
@@ -724,6 +788,7 @@ static void Q(grasp)(void) {
     Q(gradients)(solver);
     Q(fingers)(solver);
     Q(finger_errors)();
+    Q(open_grasp)(solver);
     Q(linearised)(solver);
     Q(linearised_errors)();
     Q(errors)();

@@ -422,6 +422,10 @@ typedef struct {
     double error;
     // The dimension that the functions work in; 0: not known, and not checked.
     uint32_t dimension;
+    // 1: the core contains the origin by its definition, as that of a grasp's wrenches does. Then d >= 0 is known where the origin lies on the boundary,
+    // which no support function can tell, and `lower` is 0 there instead of less by the rounding margin. 0: not known, unless `mirrored` shows
+    // it (what is its own image under a change of all signs contains the origin). What is stated must be true, or the bracket is not.
+    uint32_t contains_origin;
 } qdist_set_f64;
 
 // For polyhedra whose support function returns points of the core to the last bit, as one of stored corners does: writes h(u) along a direction u in
@@ -1343,6 +1347,7 @@ typedef struct {
     float extent;
     float error;
     uint32_t dimension;
+    uint32_t contains_origin;
 } qdist_set_f32;
 
 typedef int32_t (*qdist_height_f32)(void *user, const float *direction, float *height);

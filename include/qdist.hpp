@@ -49,7 +49,7 @@ private:
         using Set = qdist_set_##suffix;                                                                                    \
         using Body = qdist_body_##suffix;                                                                                  \
         using Body2 = qdist_body2_##suffix;                                                                                \
-        using Gauge = qdist_gauge_##suffix;                                                                                \
+        using Unit = qdist_unit_##suffix;                                                                                \
         using Options = qdist_options_##suffix;                                                                            \
         using Depth = qdist_depth_##suffix;                                                                                \
         using Result = qdist_result_##suffix;                                                                              \
@@ -174,7 +174,7 @@ Checked<typename Api<T>::Depth> depth(Solver<T, 2, V, F> &solver, const typename
 // Depth of the origin in a set; `q` null: with respect to the unit ball. `options` may be null.
 template <class T, uint32_t N, uint32_t V, uint32_t F>
 Checked<typename Api<T>::Result> solve(Solver<T, N, V, F> &solver, const typename Api<T>::Set &a,
-                                       const typename Api<T>::Gauge *q = nullptr,
+                                       const typename Api<T>::Unit *q = nullptr,
                                        const typename Api<T>::Options *options = nullptr) noexcept {
     Checked<typename Api<T>::Result> result{};
     result.struct_size = sizeof(typename Api<T>::Result);

@@ -4,7 +4,7 @@
 //! set that is made of them.
 
 use super::super::generic::{
-    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, in_range, is_mirrored, length,
+    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, flag, in_range, is_mirrored, length,
     lengths, put, shared, tiny,
 };
 use super::super::status::{
@@ -84,6 +84,7 @@ pub unsafe extern "C" fn qdist_set_join_f64(set: *mut qdist_set_f64, pair: *cons
             extent,
             error: ((error + rounding) * 1.000001).at_least(tiny()),
             dimension: n as u32,
+            contains_origin: (a.knows_origin(n) || b.knows_origin(n)).into(),
         };
         // SAFETY: checked.
         unsafe { put(set, made) };
@@ -113,6 +114,7 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
         }
         let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
         let own = inner.stated_error(linear.columns as usize);
+        let stays = shift.iter().all(|&x| x == 0.0) && inner.knows_origin(linear.columns as usize);
         let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f64 as SupportFn<f64>);
         // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
         let error = length((stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001)?;
@@ -125,6 +127,7 @@ pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *con
             extent: reach,
             error,
             dimension: linear.rows,
+            contains_origin: stays.into(),
         };
         // SAFETY: checked.
         unsafe { put(set, made) };
@@ -219,9 +222,8 @@ unsafe fn part<'a>(set: *const qdist_set_f64, n: usize) -> Check<&'a qdist_set_f
     // SAFETY: the caller's promise.
     let set = unsafe { shared(set) }?;
     set.support.ok_or(QDIST_ERROR_NULL)?;
-    for x in [set.radius, set.extent, set.error] {
-        length(x)?;
-    }
+    lengths([set.radius, set.extent, set.error])?;
+    flag(set.contains_origin)?;
     if set.dimension != 0 && set.dimension as usize != n { Err(QDIST_ERROR_DIMENSION) } else { Ok(set) }
 }
 
@@ -264,6 +266,7 @@ unsafe fn fill_pair(
         extent,
         error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
         dimension: n as u32,
+        contains_origin: (a.knows_origin(n) && b.knows_origin(n)).into(),
     };
     // Sums of lengths that are legal may be too large.
     lengths([made.radius, made.extent, made.error])?;

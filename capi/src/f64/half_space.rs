@@ -53,6 +53,7 @@ pub unsafe extern "C" fn qdist_body_half_space_f64(
             extent: 0.0,
             error: 0.0,
             dimension: 3,
+            contains_origin: 0,
         };
         // SAFETY: checked.
         unsafe { put(body, qdist_body_f64 { unbounded: Some(answer), ..qdist_body_f64::at_origin(set) }) };

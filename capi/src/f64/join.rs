@@ -74,6 +74,7 @@ pub unsafe extern "C" fn qdist_body_join_f64(body: *mut qdist_body_f64, join: *c
             extent: set.extent().at_least(tiny()),
             error: set.error().at_least(tiny()),
             dimension: 3,
+            contains_origin: set.contains_origin().into(),
         };
         let (symmetry, rolling_radius) = (from_symmetry(set.symmetry()), set.rolling_radius());
         let made = qdist_body_f64 { symmetry, rolling_radius, ..qdist_body_f64::at_origin(made) };

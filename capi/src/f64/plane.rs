@@ -47,7 +47,7 @@ pub struct qdist_body2_f64 {
     pub height: qdist_height_f64,
 }
 
-gaps!(qdist_body2_f64, set.dimension..rotation, errors..unbounded, height..);
+gaps!(qdist_body2_f64, set.contains_origin..rotation, errors..unbounded, height..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -179,6 +179,9 @@ impl Support<f64, 2> for CheckedBody2 {
     }
     fn center(&self) -> Option<(Vector<f64, 2>, f64)> {
         (self.0.spread > 0.0).then(|| (Vector::from(self.0.center), self.0.spread))
+    }
+    fn contains_origin(&self) -> bool {
+        self.0.set.knows_origin(2)
     }
     fn error(&self) -> f64 {
         self.0.set.stated_error(2)
@@ -318,6 +321,7 @@ pub unsafe extern "C" fn qdist_body2_join_f64(
             extent: set.extent().at_least(tiny()),
             error: set.error().at_least(tiny()),
             dimension: 2,
+            contains_origin: set.contains_origin().into(),
         };
         let made = qdist_body2_f64 { rolling_radius: set.rolling_radius(), ..qdist_body2_f64::at_origin(made) };
         // SAFETY: what the header asks of the caller; a measured extent may be infinite.
@@ -349,6 +353,7 @@ pub unsafe extern "C" fn qdist_body2_half_plane_f64(
             extent: 0.0,
             error: 0.0,
             dimension: 2,
+            contains_origin: 0,
         };
         // SAFETY: checked.
         unsafe { put(body, qdist_body2_f64 { unbounded: Some(answer), ..qdist_body2_f64::at_origin(set) }) };

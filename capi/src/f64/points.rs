@@ -90,6 +90,7 @@ pub unsafe extern "C" fn qdist_set_points_f64(set: *mut qdist_set_f64, shape: *c
             extent,
             error: f64::count(2 * n + 2) * f64::ROUNDOFF * extent,
             dimension: points.dimension,
+            contains_origin: 0,
         };
         // SAFETY: checked.
         unsafe { put(set, made) };
@@ -446,6 +447,7 @@ pub(super) unsafe fn set_of<const N: usize>(
         extent: all.extent().at_least(tiny()),
         error: all.error().at_least(tiny()),
         dimension: N as u32,
+        contains_origin: 0,
     };
     let center = center.map(|(center, spread)| (center.into(), spread.at_least(tiny())));
     Ok((set, center, [all.extents().into(), all.errors().into()]))

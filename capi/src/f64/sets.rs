@@ -5,7 +5,7 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::generic::{aligned, ask, coordinates, gaps, is_mirrored, lengths, put, shared};
+use super::super::generic::{aligned, ask, coordinates, flag, gaps, is_mirrored, lengths, put, shared};
 use super::super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
 };
@@ -58,9 +58,13 @@ pub struct qdist_set_f64 {
     pub error: f64,
     /// The dimension that the functions work in; 0: not known, and not checked.
     pub dimension: u32,
+    /// 1: the core contains the origin by its definition, as that of a grasp's wrenches does. Then d >= 0 is known where the origin lies on the boundary,
+    /// which no support function can tell, and `lower` is 0 there instead of less by the rounding margin. 0: not known, unless `mirrored` shows
+    /// it (what is its own image under a change of all signs contains the origin). What is stated must be true, or the bracket is not.
+    pub contains_origin: u32,
 }
 
-gaps!(qdist_set_f64, dimension..);
+gaps!(qdist_set_f64, contains_origin..);
 
 /// A set in space with a pose: x -> rotation * x + translation.
 #[repr(C)]
@@ -98,7 +102,7 @@ pub struct qdist_body_f64 {
     pub height: qdist_height_f64,
 }
 
-gaps!(qdist_body_f64, set.dimension..rotation, symmetry..unbounded, height..);
+gaps!(qdist_body_f64, set.contains_origin..rotation, symmetry..unbounded, height..);
 
 impl qdist_set_f64 {
     /// Checks the numbers for dimension `N`.
@@ -111,11 +115,18 @@ impl qdist_set_f64 {
             return Err(QDIST_ERROR_NULL);
         }
         lengths([self.radius, self.extent, self.error])?;
+        flag(self.contains_origin)?;
         if self.dimension != 0 && self.dimension as usize != N {
             return Err(QDIST_ERROR_DIMENSION);
         }
         // SAFETY: transparent.
         Ok(unsafe { &*core::ptr::from_ref(self).cast() })
+    }
+
+    /// Does the set state, or its mirror function show, that it contains the origin? As [`Support::contains_origin`].
+    pub(super) fn knows_origin(&self, n: usize) -> bool {
+        // SAFETY: the header: a mirror function may be called with `user` and any signs.
+        self.contains_origin == 1 || unsafe { is_mirrored(self.mirrored, self.user, u8::MAX >> (8 - n.clamp(1, 8))) }
     }
 
     /// The rounding error that the set states, or the default in dimension `n`.
@@ -150,6 +161,9 @@ impl<const N: usize> Support<f64, N> for CheckedSet {
     fn mirrored(&self, signs: u8) -> bool {
         // SAFETY: the promise of `checked`.
         unsafe { is_mirrored(self.0.mirrored, self.0.user, signs) }
+    }
+    fn contains_origin(&self) -> bool {
+        self.0.knows_origin(N)
     }
     fn error(&self) -> f64 {
         self.0.stated_error(N)
@@ -251,6 +265,9 @@ impl Support<f64, 3> for CheckedBody {
     fn turning(&self) -> Option<Turning<f64>> {
         // SAFETY: what the header asks of the caller: NULL, or what a body function of this scalar type has written.
         self.0.turning.map(|turning| unsafe { Turning::from_raw(turning) })
+    }
+    fn contains_origin(&self) -> bool {
+        self.0.set.knows_origin(3)
     }
     fn error(&self) -> f64 {
         self.0.set.stated_error(3)

@@ -123,6 +123,7 @@ pub(super) unsafe fn set_of<S: Shape<N>, const N: usize>(
         extent: set.extent().at_least(tiny()),
         error: set.error().at_least(tiny()),
         dimension: N as u32,
+        contains_origin: set.contains_origin().into(),
     };
     Ok((made, set))
 }

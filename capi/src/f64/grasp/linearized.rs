@@ -422,6 +422,7 @@ pub unsafe extern "C" fn qdist_set_pyramid_wrenches_f64(
             extent: checked.extent(),
             error: checked.error(),
             dimension: 6,
+            contains_origin: checked.contains_origin().into(),
         };
         // SAFETY: checked.
         unsafe { put(set, made) };
