@@ -389,7 +389,7 @@ static void Q(shallow)(void) {
     b.rotation[4] = (REAL)c;
     b.translation[0] = (REAL)2.399;
     b.translation[1] = (REAL)0.2;
-    CHECK(a.height != NULL && Q(qdist_depth3)(Q(solver3), &a, &b, NULL, &depth) == QDIST_OK);
+    CHECK(a.precise != NULL && Q(qdist_depth3)(Q(solver3), &a, &b, NULL, &depth) == QDIST_OK);
     CHECK(depth.outcome == QDIST_CONVERGED && depth.lower > 9.99e-4 && depth.upper < 1.001e-3);
 }
 

@@ -428,10 +428,10 @@ typedef struct {
     uint32_t contains_origin;
 } qdist_set_f64;
 
-// For polyhedra whose support function returns points of the core to the last bit, as one of stored corners does: writes h(u) along a direction u in
-// twice the precision. u is the exact sum of two vectors, direction[0 .. N - 1] + direction[N .. 2 N - 1], and h(u) that of height[0] + height[1]; it
-// may be off by 2^8 roundoff^2 times the sum of |u_i| extents[i]. Returns 0, or anything else where it has no answer.
-typedef int32_t (*qdist_height_f64)(void *user, const double *direction, double *height);
+// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
+// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
+// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
+typedef int32_t (*qdist_precise_f64)(void *user, const double *direction, double *point);
 
 // A set in space with a pose: x -> rotation * x + translation.
 typedef struct {
@@ -462,9 +462,9 @@ typedef struct {
     // How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
     // for your own sets.
     qdist_turning turning;
-    // NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
-    // capsules, points and hulls put it here. Called with set.user.
-    qdist_height_f64 height;
+    // NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
+    // shapes, points and hulls put it here. Called with set.user.
+    qdist_precise_f64 precise;
 } qdist_body_f64;
 
 // Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
@@ -1077,7 +1077,7 @@ typedef struct {
     // NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
     // As in qdist_body_f64.
-    qdist_height_f64 height;
+    qdist_precise_f64 precise;
 } qdist_body2_f64;
 
 // All points within `radius` of the origin.
@@ -1350,7 +1350,7 @@ typedef struct {
     uint32_t contains_origin;
 } qdist_set_f32;
 
-typedef int32_t (*qdist_height_f32)(void *user, const float *direction, float *height);
+typedef int32_t (*qdist_precise_f32)(void *user, const float *direction, float *point);
 
 typedef struct {
     qdist_set_f32 set;
@@ -1364,7 +1364,7 @@ typedef struct {
     uint32_t symmetry;
     qdist_unbounded unbounded;
     qdist_turning turning;
-    qdist_height_f32 height;
+    qdist_precise_f32 precise;
 } qdist_body_f32;
 
 qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);
@@ -1721,7 +1721,7 @@ typedef struct {
     float extents[2];
     float errors[2];
     qdist_unbounded unbounded;
-    qdist_height_f32 height;
+    qdist_precise_f32 precise;
 } qdist_body2_f32;
 
 typedef struct {

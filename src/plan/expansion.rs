@@ -2,7 +2,6 @@
 
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm};
-use crate::plan::distance::Cloud;
 use crate::plan::start::Start;
 use crate::polytope::simplex::{Simplex, Vertex};
 use crate::polytope::{Facet, Index, Insertion, Polytope};
@@ -230,31 +229,62 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
     /// the plane, or belong to another of several minima.
     pub(crate) fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
+        self.simplex_around(query.foot(), &query.direction, query.options.relative, facet)
+    }
+
+    /// The same, around a point in a plane with this normal, known to a share `relative` along it, and to the root of that sideways.
+    pub(crate) fn simplex_around(
+        &self,
+        foot: Option<Vector<T, N>>,
+        normal: &Vector<T, N>,
+        relative: T,
+        facet: Option<Index>,
+    ) -> Simplex<T, N> {
         let lowest = match facet {
             Some(index) => self.facet(index),
             None => self.lowest(),
         };
         let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
-        let mut simplex = self.corners(facet);
-        let Some(foot) = query.foot() else {
-            simplex.minimize(self.resolution());
-            return simplex;
-        };
-        let resolution = self.resolution();
-        simplex.translate(&-foot);
-        simplex.minimize(resolution);
+        let Some(foot) = foot else { return self.seen_from(facet, &Vector::zeros()) };
+        let mut simplex = self.seen_from(facet, &foot);
         let miss = simplex.point();
-        let near = resolution * T::count(64) + query.options.relative.at_least(T::zero()).root() * norm(&foot);
-        if miss.dot(&miss) > near * near {
-            let cloud = Cloud { vertices: self.vertices(), origin: foot };
-            if let Some(found) = cloud.nearest(&facet.normal)
-                && found.distance * found.distance < miss.dot(&miss)
-            {
-                simplex = found.simplex;
-            }
+        let resolution = self.resolution();
+        let relative = relative.at_least(T::zero());
+        let aside = resolution * T::count(64) + relative.root() * norm(&foot);
+        let short = resolution + relative * foot.dot(normal).abs();
+        if (miss.dot(&miss) > aside * aside || miss.dot(normal).abs() > short)
+            && let Some(nearer) = self.nearer(&foot, norm(&miss))
+        {
+            simplex = self.seen_from(nearer, &foot);
         }
         simplex.translate(&foot);
         simplex
+    }
+
+    /// A facet with the weights of its point nearest to a point, which is taken for the origin.
+    #[inline(never)]
+    fn seen_from(&self, facet: &Facet<T, N>, point: &Vector<T, N>) -> Simplex<T, N> {
+        let mut simplex = self.corners(facet);
+        simplex.translate(&-point);
+        simplex.minimize(self.resolution());
+        simplex
+    }
+
+    /// The facet that is nearest to a point, if one is nearer than `distance`.
+    #[cold]
+    #[inline(never)]
+    fn nearer(&self, point: &Vector<T, N>, mut distance: T) -> Option<&Facet<T, N>> {
+        let mut nearest = None;
+        for facet in self.facets() {
+            // (No point of a facet is nearer than its plane.)
+            if (facet.offset - facet.normal.dot(point)).abs() < distance {
+                let found = norm(&self.seen_from(facet, point).point());
+                if found < distance {
+                    (nearest, distance) = (Some(facet), found);
+                }
+            }
+        }
+        nearest
     }
 }
 

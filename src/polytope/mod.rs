@@ -231,6 +231,22 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.iter().take(self.facet_top).filter(|f| f.is_live())
     }
 
+    /// Facets are at positions below this.
+    pub fn places(&self) -> Index {
+        Index::try_from(self.facet_top).unwrap_or(NONE)
+    }
+
+    /// The facet at a position, if one is alive there.
+    pub fn live_facet(&self, index: Index) -> Option<&Facet<T, N>> {
+        self.facet(index).filter(|facet| facet.is_live())
+    }
+
+    /// The facet with the lowest key, and its position.
+    pub fn lowest_numbered(&self) -> Option<(Index, Facet<T, N>)> {
+        let lowest = self.numbered_facets().reduce(|best, f| if f.1.key < best.1.key { f } else { best });
+        lowest.map(|(index, facet)| (index, *facet))
+    }
+
     /// The facet whose plane is nearest to the origin, with its normal and offset.
     pub fn nearest_facet(&self) -> Option<(Index, Vector<T, N>, T)> {
         let (index, f) = self.numbered_facets().reduce(|best, f| if f.1.offset < best.1.offset { f } else { best })?;

@@ -50,14 +50,17 @@ pub(crate) struct Edges<T, const N: usize> {
     pub inverse: [T; N],
     r: [[T; N]; N],
     pub count: usize,
+    /// Is what cancellation leaves of an edge made orthogonal once more?
+    twice: bool,
 }
 
 impl<T: Real, const N: usize> Edges<T, N> {
     pub fn new() -> Self {
-        Edges { q: [Vector::zeros(); N], inverse: [T::zero(); N], r: [[T::zero(); N]; N], count: 0 }
+        Edges { q: [Vector::zeros(); N], inverse: [T::zero(); N], r: [[T::zero(); N]; N], count: 0, twice: false }
     }
 
     /// Adds an edge; false when it lies in the span of the others up to `resolution`.
+    #[inline(always)]
     pub fn push(&mut self, edge: &Vector<T, N>, resolution: T) -> bool {
         let column = self.count;
         let mut rest = *edge;
@@ -70,7 +73,11 @@ impl<T: Real, const N: usize> Edges<T, N> {
                 }
             }
         }
-        let squared = rest.dot(&rest);
+        let mut squared = rest.dot(&rest);
+        if self.twice && squared < edge.dot(edge) * T::of(1e-3) {
+            rest = self.cleared(&rest);
+            squared = rest.dot(&rest);
+        }
         if !(squared > resolution * resolution) {
             return false;
         }
@@ -79,6 +86,21 @@ impl<T: Real, const N: usize> Edges<T, N> {
         *inverse = T::one() / squared;
         self.count += 1;
         true
+    }
+
+    /// The rest of an edge without what it still has along the others.
+    #[cold]
+    #[inline(never)]
+    fn cleared(&mut self, rest: &Vector<T, N>) -> Vector<T, N> {
+        let (column, mut rest) = (self.count, *rest);
+        for (row, (q, inverse)) in self.r.iter_mut().zip(self.q.iter().zip(&self.inverse)).take(column) {
+            let along = rest.dot(q) * *inverse;
+            rest -= q * along;
+            if let Some(entry) = row.get_mut(column) {
+                *entry += along;
+            }
+        }
+        rest
     }
 
     /// The part of v orthogonal to all edges.
@@ -172,9 +194,15 @@ impl<T: Real, const N: usize> Simplex<T, N> {
     /// need (Wolfe's minor cycle: minimise over the affine hull; while that leaves the simplex, walk to its
     /// boundary and drop what vanished). False when the corners are affinely dependent up to
     /// `resolution`: then the weights are still those of a point of the simplex, but perhaps not of the nearest.
+    #[inline(always)]
     pub fn minimize(&mut self, resolution: T) -> bool {
+        self.minimize_by(resolution, false)
+    }
+
+    /// The same; `twice`: for corners that are near each other and far from the rest.
+    pub(crate) fn minimize_by(&mut self, resolution: T, twice: bool) -> bool {
         for _ in 0..MAX_CORNERS {
-            let Some(target) = self.affine_minimizer(resolution) else { return false };
+            let Some(target) = self.affine_minimizer(resolution, twice) else { return false };
             // The largest step from the weights towards the target that keeps all of them >= 0.
             let mut step = T::one();
             for (corner, &goal) in self.corners.iter().zip(&target) {
@@ -208,10 +236,10 @@ impl<T: Real, const N: usize> Simplex<T, N> {
     }
 
     /// Weights of the point of the affine hull nearest to the origin.
-    fn affine_minimizer(&self, resolution: T) -> Option<[T; MAX_CORNERS]> {
+    fn affine_minimizer(&self, resolution: T, twice: bool) -> Option<[T; MAX_CORNERS]> {
         let mut weights = [T::zero(); MAX_CORNERS];
         let base = self.corners.first()?.vertex.point;
-        let mut edges = Edges::<T, N>::new();
+        let mut edges = Edges::<T, N> { twice, ..Edges::new() };
         for corner in self.corners.iter().skip(1) {
             if !edges.push(&(corner.vertex.point - base), resolution) {
                 return None;

@@ -159,6 +159,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             lower: self.unscaled(bracket.lower, -T::one()),
             upper: self.unscaled(bracket.upper, T::one()),
             direction: direction.unwrap_or(answer.direction),
+            iterations: self.iterations,
+            support_calls: self.support_calls,
             ..answer
         }
     }

@@ -57,16 +57,15 @@ impl<'a, T: Real, const N: usize> List<'a, T, N> {
         best.1
     }
 
-    /// The greatest height in two words. Only points that one word cannot tell from the highest are looked at twice: the products with the high
+    /// The farthest point along a direction in two words. Only points that one word cannot tell from the highest are looked at twice: the products with the high
     /// word are off by N + 1 roundoffs of |u| times the extent, and the low word is one more.
-    pub fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+    pub fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
         let size = self.points.iter().flatten().fold(T::zero(), |most, &x| most.at_least(x).at_least(-x));
         let blur = size * T::count(N) * norm(&u.high) * (T::count(4 * N + 8) * T::ROUNDOFF);
         let least = self.height::<false>(&u.high, self.scan::<false>(&u.high)) - blur;
         let high = self.points.iter().filter(|p| self.height::<false>(&u.high, p) >= least);
-        let sums = high.map(|p| u.dot(&Vector::from(*p)).parts());
-        let most = sums.reduce(|most, sum| if sum > most { sum } else { most })?;
-        Some(most.into())
+        let sums = high.map(|p| TwoWords::from(Vector::from(*p))).map(|p| (u.dot(&p).parts(), p));
+        sums.reduce(|most, sum| if sum.0 > most.0 { sum } else { most }).map(|(_, point)| point)
     }
 
     /// The best of the listed vertices, the first one of equals.
@@ -262,8 +261,8 @@ impl<T: Real, const N: usize> Support<T, N> for Points<'_, T, N> {
         let first = if self.spread.is_some() { Vector::from(*self.list.first).abs() } else { Vector::zeros() };
         self.extents + first
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
-        self.list.height_in_two_words(u)
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        self.list.support_in_two_words(u)
     }
     fn center(&self) -> Option<(Vector<T, N>, T)> {
         self.spread.map(|spread| (Vector::from(*self.list.first), spread))
@@ -325,8 +324,8 @@ impl<T: Real, W: Word> Support<T, 3> for Hull<'_, T, W> {
     fn extents(&self) -> Vector<T, 3> {
         self.all.extents()
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, 3>) -> Option<[T; 2]> {
-        self.all.height_in_two_words(u)
+    fn support_in_two_words(&self, u: &TwoWords<T, 3>) -> Option<TwoWords<T, 3>> {
+        self.all.support_in_two_words(u)
     }
     fn center(&self) -> Option<(Vector<T, 3>, T)> {
         self.all.center()

@@ -158,10 +158,10 @@ pub trait Support<T: Real, const N: usize> {
         Vector::repeat(self.error())
     }
 
-    /// For polyhedra whose [`support`](Support::support) returns points of the core to the last bit: h(u) along a direction in two words, in two
-    /// words, off by no more than 2^8 (unit roundoff)^2 times the sum of |u_i| [`extents`](Support::extents)_i. Shallow contact of such bodies is
-    /// measured to the last digits. `None`: not offered.
-    fn height_in_two_words(&self, _u: &TwoWords<T, N>) -> Option<[T; 2]> {
+    /// The support function in twice the precision: a point of the core that is farthest along a direction near unit length, both in two words. With the unit
+    /// roundoff u, coordinate i of the point is off by no more than e_i = 2^8 u^2 [`extents`](Support::extents)_i, and its height by no more than the sum of
+    /// |u_i| e_i. Shallow contact of such bodies is measured to the last digits. `None`: not offered.
+    fn support_in_two_words(&self, _u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
         None
     }
 

@@ -214,8 +214,8 @@ impl<T: Real, const N: usize> Support<T, N> for Point<T, N> {
     fn extents(&self) -> Vector<T, N> {
         self.at.map(magnitude)
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
-        Some(u.dot(&self.at).parts().into())
+    fn support_in_two_words(&self, _: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        Some(TwoWords::from(self.at))
     }
     fn error(&self) -> T {
         T::zero()
@@ -270,8 +270,8 @@ impl<T: Real, const N: usize> Support<T, N> for Sphere<T, N> {
     fn error(&self) -> T {
         T::zero()
     }
-    fn height_in_two_words(&self, _: &TwoWords<T, N>) -> Option<[T; 2]> {
-        Some([T::zero(); 2])
+    fn support_in_two_words(&self, _: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        Some(TwoWords::from(Vector::zeros()))
     }
 }
 
@@ -327,9 +327,9 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     fn error(&self) -> T {
         T::zero()
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
         // (The high word has the sign of the sum.)
-        Some(u.dot(&self.half.zip_map(&u.high, signed)).parts().into())
+        Some(TwoWords::from(self.half.zip_map(&u.high, signed)))
     }
 }
 
@@ -412,6 +412,15 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
         } else {
             Ok(one_by_one(&self.out_of_range(u)))
         }
+    }
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        let size = largest(&self.semi);
+        if !(size > T::count(4) * T::TINY) {
+            return Some(TwoWords::from(Vector::zeros()));
+        }
+        let scale = T::one() / size.power_of_two();
+        let outward = u.times(&(self.semi * scale)).unit().times(&self.semi);
+        Some(if self.ball > T::zero() { outward.plus(&u.unit().times(&Vector::repeat(-self.ball))) } else { outward })
     }
     fn rolling_radius(&self) -> T {
         self.ball

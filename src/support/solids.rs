@@ -62,6 +62,9 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     fn extents(&self) -> Vector<T, 3> {
         Vector::from([self.radius, self.radius, self.half_height])
     }
+    fn support_in_two_words(&self, u: &TwoWords<T, 3>) -> Option<TwoWords<T, 3>> {
+        Some(rim(self.radius, signed(self.half_height, u.high.z), u))
+    }
     fn errors(&self) -> Vector<T, 3> {
         let rim = T::count(8) * T::ROUNDOFF * self.radius;
         Vector::from([rim, rim, T::zero()])
@@ -134,8 +137,8 @@ impl<T: Real, const N: usize> Support<T, N> for Capsule<T, N> {
     fn error(&self) -> T {
         T::zero()
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
-        Some(u.dot(&self.support(&u.high).ok()?).parts().into())
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        Some(TwoWords::from(self.support(&u.high).ok()?))
     }
 }
 
@@ -211,12 +214,26 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     fn extents(&self) -> Vector<T, 3> {
         Vector::from([self.radius, self.radius, self.half_height])
     }
+    fn support_in_two_words(&self, u: &TwoWords<T, 3>) -> Option<TwoWords<T, 3>> {
+        let apex = TwoWords::from(Vector::from([T::zero(), T::zero(), self.half_height]));
+        let base = rim(self.radius, -self.half_height, u);
+        Some(if u.dot(&apex).minus(&u.dot(&base)) > T::zero() { apex } else { base })
+    }
     fn errors(&self) -> Vector<T, 3> {
         self.extents() * (T::count(16) * T::ROUNDOFF)
     }
     fn error(&self) -> T {
         T::count(16) * T::ROUNDOFF * (self.radius + self.half_height)
     }
+}
+
+/// The point of a circle around the axis, at height z, that is farthest along a direction, in two words.
+fn rim<T: Real>(radius: T, z: T, u: &TwoWords<T, 3>) -> TwoWords<T, 3> {
+    let across = |v: &Vector<T, 3>| Vector::from([v.x, v.y, T::zero()]);
+    let n = TwoWords { high: across(&u.high), low: across(&u.low) }.unit();
+    let mut point = n.times(&Vector::repeat(radius));
+    point.high.z = z;
+    point
 }
 
 #[cfg(test)]

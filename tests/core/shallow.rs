@@ -5,7 +5,7 @@ use crate::common;
 
 use common::dice::Dice;
 use nalgebra::{Rotation2, Rotation3, SMatrix, Unit, Vector2, Vector3};
-use qdist::support::{BoxShape, Capsule, Points, Sphere, Support};
+use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};
 use qdist::{Body, Options, Outcome, Workspace};
 
 type Pose = (SMatrix<f32, 3, 3>, Vector3<f32>);
@@ -15,6 +15,9 @@ enum Numbers {
     Box(Vector3<f32>),
     Hull(Vec<[f32; 3]>),
     Capsule(f32, f32),
+    Cylinder(f32, f32),
+    Cone(f32, f32),
+    Ellipsoid(Vector3<f32>),
 }
 
 impl Numbers {
@@ -27,7 +30,10 @@ impl Numbers {
             }
             2 => Numbers::Capsule(rng.range(0.0, 0.01) as f32, rng.range(0.3, 1.0) as f32),
             3 => Numbers::Capsule(rng.range(0.2, 1.0) as f32, rng.range(0.3, 1.0) as f32),
-            _ => Numbers::Capsule(rng.range(0.2, 1.0) as f32, 0.0),
+            4 => Numbers::Capsule(rng.range(0.2, 1.0) as f32, 0.0),
+            5 => Numbers::Cylinder(rng.range(0.3, 1.0) as f32, rng.range(0.3, 1.0) as f32),
+            6 => Numbers::Cone(rng.range(0.3, 1.0) as f32, rng.range(0.3, 1.0) as f32),
+            _ => Numbers::Ellipsoid(Vector3::from_fn(|_, _| rng.range(0.3, 1.0) as f32)),
         }
     }
 
@@ -46,6 +52,18 @@ impl Numbers {
             &Numbers::Capsule(radius, half) => {
                 let (radius, half) = (radius * scale, half * scale);
                 act(&Capsule::new(radius, half).unwrap(), &Capsule::new(f64::from(radius), f64::from(half)).unwrap())
+            }
+            &Numbers::Cylinder(radius, half) => {
+                let (radius, half) = (radius * scale, half * scale);
+                act(&Cylinder::new(radius, half).unwrap(), &Cylinder::new(f64::from(radius), f64::from(half)).unwrap())
+            }
+            &Numbers::Cone(radius, half) => {
+                let (radius, half) = (radius * scale, half * scale);
+                act(&Cone::new(radius, half).unwrap(), &Cone::new(f64::from(radius), f64::from(half)).unwrap())
+            }
+            Numbers::Ellipsoid(semi) => {
+                let semi = semi * scale;
+                act(&Ellipsoid::new(semi).unwrap(), &Ellipsoid::new(semi.map(f64::from)).unwrap())
             }
         }
     }
@@ -68,7 +86,7 @@ fn pose(rng: &mut Dice) -> Pose {
 fn exact(a: &dyn Support<f64, 3>, at: &Pose, b: &dyn Support<f64, 3>, bt: &Pose) -> (f64, f64) {
     let place = |set, pose: &Pose| Body::new(set, pose.0.map(f64::from), pose.1.map(f64::from)).map_err(drop);
     let (a, b) = (place(a, at).unwrap(), place(b, bt).unwrap());
-    let mut memory = Workspace::<f64, 3, 512, 1024>::new();
+    let mut memory = Box::new(Workspace::<f64, 3, 2048, 4096>::new());
     let depth = memory.solver().depth(&a, &b, &Options { relative: 1e-10, ..Options::default() });
     (depth.lower, depth.upper)
 }
@@ -76,12 +94,23 @@ fn exact(a: &dyn Support<f64, 3>, at: &Pose, b: &dyn Support<f64, 3>, bt: &Pose)
 /// Of contacts of polyhedra of this size, so far from the origin of the world: how many were tried, and how many have a bracket as narrow as asked for.
 /// All must be true.
 fn converged(count: usize, scale: f32, offset: f32, depths: std::ops::Range<f64>) -> (usize, usize) {
+    // (Two thin capsules have no cores to speak of, and cross in a point.)
+    converged_of(count, scale, offset, depths, |number| ([0, 1, 3, 4, 0, 1][number % 6], number / 6 % 5))
+}
+
+/// The same of contacts of the kinds that `kinds` gives each number.
+fn converged_of(
+    count: usize,
+    scale: f32,
+    offset: f32,
+    depths: std::ops::Range<f64>,
+    kinds: impl Fn(usize) -> (usize, usize),
+) -> (usize, usize) {
     let mut rng = Dice::new(7);
     let (mut tried, mut met) = (0, 0);
     for number in 0..count {
-        // (Two thin capsules have no cores to speak of, and cross in a point.)
-        let kinds = [0, 1, 3, 4, 0, 1];
-        let (first, second) = (Numbers::random(&mut rng, kinds[number % 6]), Numbers::random(&mut rng, number / 6 % 5));
+        let (first, second) = kinds(number);
+        let (first, second) = (Numbers::random(&mut rng, first), Numbers::random(&mut rng, second));
         let (mut at, mut bt) = (pose(&mut rng), pose(&mut rng));
         at.1 = direction(&mut rng).map(|x| (x as f32) * offset * scale);
         let (along, wanted) = (direction(&mut rng), f64::from(scale) * rng.range(depths.start, depths.end));
@@ -128,6 +157,17 @@ fn converged(count: usize, scale: f32, offset: f32, depths: std::ops::Range<f64>
 fn shallow_contacts_of_polyhedra_converge_in_f32() {
     let (tried, met) = converged(300, 1.0, 0.0, 1e-3..1e-2);
     assert!(tried > 280 && met == tried, "{met} of {tried}");
+}
+
+/// Cylinders, cones and ellipsoids with each other and with all others.
+#[test]
+fn shallow_contacts_of_curved_bodies_converge_in_f32() {
+    for first in 5..8 {
+        for second in [0, 1, 3, 4, 5, 6, 7] {
+            let (tried, met) = converged_of(30, 1.0, 0.0, 1e-3..1e-2, |_| (first, second));
+            assert!(tried > 20 && met == tried, "{first} {second}: {met} of {tried}");
+        }
+    }
 }
 
 #[test]

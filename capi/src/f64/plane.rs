@@ -16,7 +16,7 @@ use super::super::status::{
 use super::super::symmetry::qdist_unbounded;
 use super::points::{self, qdist_points_f64};
 use super::query::{conclude, convert, from_depth, qdist_depth_f64, qdist_options_f64};
-use super::sets::{arguments, ask_height, qdist_height_f64, qdist_set_f64, qdist_support_f64};
+use super::sets::{arguments, ask_precisely, qdist_precise_f64, qdist_set_f64, qdist_support_f64};
 use super::shapes::{self, Shape, shape};
 use core::ffi::c_void;
 use qdist::Body;
@@ -44,10 +44,10 @@ pub struct qdist_body2_f64 {
     /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
     /// As in qdist_body_f64.
-    pub height: qdist_height_f64,
+    pub precise: qdist_precise_f64,
 }
 
-gaps!(qdist_body2_f64, set.contains_origin..rotation, errors..unbounded, height..);
+gaps!(qdist_body2_f64, set.contains_origin..rotation, errors..unbounded, precise..);
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -114,7 +114,7 @@ impl qdist_body2_f64 {
             extents: [0.0; 2],
             errors: [0.0; 2],
             unbounded: None,
-            height: None,
+            precise: None,
         }
     }
 
@@ -186,9 +186,9 @@ impl Support<f64, 2> for CheckedBody2 {
     fn error(&self) -> f64 {
         self.0.set.stated_error(2)
     }
-    fn height_in_two_words(&self, u: &TwoWords<f64, 2>) -> Option<[f64; 2]> {
+    fn support_in_two_words(&self, u: &TwoWords<f64, 2>) -> Option<TwoWords<f64, 2>> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask_height(self.0.height, self.0.set.user, u) }
+        unsafe { ask_precisely(self.0.precise, self.0.set.user, u) }
     }
     fn errors(&self) -> Vector<f64, 2> {
         let stated = self.0.extents.iter().any(|&x| x > 0.0);
@@ -210,8 +210,8 @@ unsafe fn fill<S: Shape<2>>(body: *mut qdist_body2_f64, shape: *const S, support
     let (made, set) = unsafe { shapes::set_of(shape, support) }?;
     let rolling_radius = set.rolling_radius();
     let (extents, errors) = (set.extents().into(), set.errors().into());
-    let height = shapes::height_of::<S, 2>(&set);
-    let made = qdist_body2_f64 { rolling_radius, extents, errors, height, ..qdist_body2_f64::at_origin(made) };
+    let precise = shapes::precise_of::<S, 2>(&set);
+    let made = qdist_body2_f64 { rolling_radius, extents, errors, precise, ..qdist_body2_f64::at_origin(made) };
     // SAFETY: not NULL, aligned, and the caller's promise.
     unsafe { put(body, made) };
     Ok(())
@@ -266,8 +266,8 @@ pub unsafe extern "C" fn qdist_body2_points_f64(
         // SAFETY: what the header asks of the caller.
         let (set, center, [extents, errors]) =
             unsafe { points::set_of::<2>(shared(shape)?, shape.cast(), supports, [None; 2]) }?;
-        let height: qdist_height_f64 = Some(points::height::<2>);
-        let mut made = qdist_body2_f64 { extents, errors, height, ..qdist_body2_f64::at_origin(set) };
+        let precise: qdist_precise_f64 = Some(points::precise::<2>);
+        let mut made = qdist_body2_f64 { extents, errors, precise, ..qdist_body2_f64::at_origin(set) };
         if let Some((center, spread)) = center {
             (made.center, made.spread) = (center, spread);
         }

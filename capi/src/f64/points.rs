@@ -13,7 +13,7 @@ use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_HULL_POINTS, QDIST_ERROR_WORKSPACE_SIZE,
     from_graph, qdist_interrupt, qdist_status, status,
 };
-use super::sets::{answer_height, arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64, room};
+use super::sets::{answer_precisely, arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64, room};
 use core::ffi::c_void;
 use qdist::Real;
 use qdist::internal::{List, near_unit, one_by_one};
@@ -453,16 +453,16 @@ pub(super) unsafe fn set_of<const N: usize>(
     Ok((set, center, [all.extents().into(), all.errors().into()]))
 }
 
-/// h(u) of points in two words. (The points are the first member of a hull.)
-pub(super) unsafe extern "C" fn height<const N: usize>(
+/// The support function of points in two words. (The points are the first member of a hull.)
+pub(super) unsafe extern "C" fn precise<const N: usize>(
     user: *mut c_void,
     direction: *const f64,
-    height: *mut f64,
+    point: *mut f64,
 ) -> i32 {
     // SAFETY: what the header asks of the caller.
     unsafe {
-        answer_height(user, direction, height, |points: &qdist_points_f64, u| {
-            points.list::<N>().ok()?.height_in_two_words(u)
+        answer_precisely(user, direction, point, |points: &qdist_points_f64, u| {
+            points.list::<N>().ok()?.support_in_two_words(u)
         })
     }
 }
@@ -481,7 +481,7 @@ unsafe fn fill(
     aligned(body)?;
     // SAFETY: the caller's promise.
     let (set, center, [extents, errors]) = unsafe { set_of::<3>(points, user, supports, exhaustive) }?;
-    let mut made = qdist_body_f64 { extents, errors, height: Some(height::<3>), ..qdist_body_f64::at_origin(set) };
+    let mut made = qdist_body_f64 { extents, errors, precise: Some(precise::<3>), ..qdist_body_f64::at_origin(set) };
     if let Some((center, spread)) = center {
         (made.center, made.spread) = (center, spread);
     }

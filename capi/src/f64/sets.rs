@@ -29,11 +29,11 @@ use qdist::{Real, TwoWords, Vector};
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
 
-/// For polyhedra whose support function returns points of the core to the last bit, as one of stored corners does: writes h(u) along a direction u in
-/// twice the precision. u is the exact sum of two vectors, direction[0 .. N - 1] + direction[N .. 2 N - 1], and h(u) that of height[0] + height[1]; it
-/// may be off by 2^8 roundoff^2 times the sum of |u_i| extents[i]. Returns 0, or anything else where it has no answer.
-pub type qdist_height_f64 =
-    Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, height: *mut f64) -> i32>;
+/// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
+/// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
+/// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
+pub type qdist_precise_f64 =
+    Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
 
 /// A convex set, core + radius * ball. Start with `= {0}`: what is zero takes its default.
 #[repr(C)]
@@ -97,12 +97,12 @@ pub struct qdist_body_f64 {
     /// How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
     /// for your own sets.
     pub turning: qdist_turning,
-    /// NULL; or h(u) in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of spheres, boxes,
-    /// capsules, points and hulls put it here. Called with set.user.
-    pub height: qdist_height_f64,
+    /// NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
+    /// shapes, points and hulls put it here. Called with set.user.
+    pub precise: qdist_precise_f64,
 }
 
-gaps!(qdist_body_f64, set.contains_origin..rotation, symmetry..unbounded, height..);
+gaps!(qdist_body_f64, set.contains_origin..rotation, symmetry..unbounded, precise..);
 
 impl qdist_set_f64 {
     /// Checks the numbers for dimension `N`.
@@ -186,7 +186,7 @@ impl qdist_body_f64 {
             symmetry: QDIST_SYMMETRY_NONE,
             unbounded: None,
             turning: None,
-            height: None,
+            precise: None,
         }
     }
 
@@ -272,9 +272,9 @@ impl Support<f64, 3> for CheckedBody {
     fn error(&self) -> f64 {
         self.0.set.stated_error(3)
     }
-    fn height_in_two_words(&self, u: &TwoWords<f64, 3>) -> Option<[f64; 2]> {
+    fn support_in_two_words(&self, u: &TwoWords<f64, 3>) -> Option<TwoWords<f64, 3>> {
         // SAFETY: the promise of `checked`.
-        unsafe { ask_height(self.0.height, self.0.set.user, u) }
+        unsafe { ask_precisely(self.0.precise, self.0.set.user, u) }
     }
     fn errors(&self) -> Vector<f64, 3> {
         if self.0.states_axes() { Vector::from(self.0.errors) } else { Vector::repeat(self.0.set.stated_error(3)) }
@@ -330,46 +330,48 @@ pub(super) fn room<const N: usize>(point: *mut f64) -> Check<*mut [f64; N]> {
     Ok(point.cast())
 }
 
-/// Asks for h(u) in two words.
+/// Asks for a support point in two words.
 ///
 /// # Safety
 /// The function may be called with `user` in dimension `N`.
-pub(super) unsafe fn ask_height<const N: usize>(
-    function: qdist_height_f64,
+pub(super) unsafe fn ask_precisely<const N: usize>(
+    function: qdist_precise_f64,
     user: *mut c_void,
     u: &TwoWords<f64, N>,
-) -> Option<[f64; 2]> {
+) -> Option<TwoWords<f64, N>> {
     let function = function?;
     let mut direction = [0.0; 6];
     for (to, &word) in direction.iter_mut().zip(u.high.iter().chain(u.low.iter())) {
         *to = word;
     }
-    let mut height = [f64::NAN; 2];
+    let mut point = [f64::NAN; 6];
     // SAFETY: the caller's promise.
-    let code = unsafe { function(user, direction.as_ptr(), height.as_mut_ptr()) };
-    (code == 0).then_some(height)
+    let code = unsafe { function(user, direction.as_ptr(), point.as_mut_ptr()) };
+    let (high, low) = (point.iter(), point.iter().skip(N));
+    let point = [Vector::from_iterator(high.take(N).copied()), Vector::from_iterator(low.take(N).copied())];
+    (code == 0).then_some(TwoWords { high: point[0], low: point[1] })
 }
 
-/// Answers for h(u) in two words, with the struct behind `user`.
+/// Answers for a support point in two words, with the struct behind `user`.
 ///
 /// # Safety
-/// Each pointer that is not NULL is aligned and valid for a `S`, for 2 `N` numbers, and for writes of two.
+/// Each pointer that is not NULL is aligned and valid for a `S`, for 2 `N` numbers, and for writes of as many.
 #[inline(always)]
-pub(super) unsafe fn answer_height<S, const N: usize>(
+pub(super) unsafe fn answer_precisely<S, const N: usize>(
     user: *mut c_void,
     direction: *const f64,
-    height: *mut f64,
-    find: impl FnOnce(&S, &TwoWords<f64, N>) -> Option<[f64; 2]>,
+    point: *mut f64,
+    find: impl FnOnce(&S, &TwoWords<f64, N>) -> Option<TwoWords<f64, N>>,
 ) -> i32 {
     let found = || {
         // SAFETY: the caller's promise.
         let (shape, [high, low], room) = unsafe {
-            let (shape, _, room) = arguments::<S, N>(user, direction, height).ok()?;
-            (shape, direction.cast::<[[f64; N]; 2]>().read(), room.cast::<[f64; 2]>())
+            let (shape, _, room) = arguments::<S, N>(user, direction, point).ok()?;
+            (shape, direction.cast::<[[f64; N]; 2]>().read(), room.cast::<[[f64; N]; 2]>())
         };
         let found = find(shape, &TwoWords { high: Vector::from(high), low: Vector::from(low) })?;
         // SAFETY: `arguments` has checked it.
-        unsafe { room.write(found) };
+        unsafe { room.write([found.high.into(), found.low.into()]) };
         Some(())
     };
     i32::from(found().is_none())

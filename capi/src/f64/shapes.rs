@@ -14,7 +14,7 @@
 use super::super::generic::{aligned, mirrored_always, put, shared, tiny};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_mirrored};
-use super::sets::{answer_height, arguments, qdist_body_f64, qdist_height_f64, qdist_set_f64, qdist_support_f64};
+use super::sets::{answer_precisely, arguments, qdist_body_f64, qdist_precise_f64, qdist_set_f64, qdist_support_f64};
 use core::ffi::c_void;
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere, Support, Symmetry, Turning};
 use qdist::{Real, TwoWords, Vector};
@@ -140,14 +140,14 @@ unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f64, shape: *const S, support:
     let symmetry = from_symmetry(set.symmetry());
     let turning = set.turning().map(Turning::into_raw);
     let (extents, errors) = (set.extents().into(), set.errors().into());
-    let height = height_of::<S, 3>(&set);
+    let precise = precise_of::<S, 3>(&set);
     let made = qdist_body_f64 {
         symmetry,
         rolling_radius,
         turning,
         extents,
         errors,
-        height,
+        precise,
         ..qdist_body_f64::at_origin(made)
     };
     // SAFETY: not NULL, aligned, and the caller's promise.
@@ -155,19 +155,19 @@ unsafe fn fill<S: Shape<3>>(body: *mut qdist_body_f64, shape: *const S, support:
     Ok(())
 }
 
-/// The function for h(u) in two words, for shapes that have it.
-pub(super) fn height_of<S: Shape<N>, const N: usize>(set: &S::Set) -> qdist_height_f64 {
-    set.height_in_two_words(&TwoWords::from(Vector::zeros()))?;
-    Some(height::<S, N>)
+/// The support function in two words, for shapes that have it.
+pub(super) fn precise_of<S: Shape<N>, const N: usize>(set: &S::Set) -> qdist_precise_f64 {
+    set.support_in_two_words(&TwoWords::from(Vector::repeat(1.0)))?;
+    Some(precise::<S, N>)
 }
 
-unsafe extern "C" fn height<S: Shape<N>, const N: usize>(
+unsafe extern "C" fn precise<S: Shape<N>, const N: usize>(
     user: *mut c_void,
     direction: *const f64,
-    height: *mut f64,
+    point: *mut f64,
 ) -> i32 {
     // SAFETY: what the header asks of the caller.
-    unsafe { answer_height(user, direction, height, |shape: &S, u| shape.trusted().height_in_two_words(u)) }
+    unsafe { answer_precisely(user, direction, point, |shape: &S, u| shape.trusted().support_in_two_words(u)) }
 }
 
 pub(super) fn from_symmetry(symmetry: Symmetry) -> u32 {

@@ -33,7 +33,7 @@ mod sectors;
 
 use arcs::NEARLY_COAXIAL;
 pub use arcs::Turning;
-use fine::{Fine, Recorder};
+use fine::{Fine, Recorder, fine_error};
 
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
@@ -672,10 +672,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ) -> Option<Answer<T, N>> {
         let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
         let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
-        // (A normal in one word proves an upper bound to half a roundoff of the bodies' size: where that is too much, two do not help.)
+        // (A normal in one word proves an upper bound to half a roundoff of the bodies' size: where that is too much, two do not help. Nor do they where what
+        // two words leave open is.)
         let width = options.absolute.at_least(options.relative * answer.upper);
-        let tellable = width >= pair.extent * (T::of(0.25) * T::ROUNDOFF);
-        let shallow = tellable && is_shallow(answer) && Recorder::new(pair).is_some();
+        let tellable = width >= pair.extent * (T::of(0.25) * T::ROUNDOFF) && width > fine_error(pair) * T::count(4);
+        let shallow = tellable && is_shallow(answer) && Recorder::suits(pair);
         if !finer && !shallow && asks == [false; 2] {
             return None;
         }
@@ -694,7 +695,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let (a, b) = (pair.a.remade(a.as_ref()), pair.b.remade(b.as_ref()));
         let sharper = Pair::new(&a, &b).ok()?;
         let calls = total([sharper.on_a.calls, sharper.on_b.calls]);
-        let recorder = if shallow { Recorder::new(&sharper) } else { None };
+        let recorder = (shallow && Recorder::suits(&sharper)).then(|| Recorder::new(&sharper));
         let set: &dyn Support<T, N> = recorder.as_ref().map_or(&sharper, |recorder| recorder);
         let (mut query, checked) = Pair::query(set, &ball, calls, options, interrupt);
         let mut ready = (finer || measured) && self.sharpen(&mut query, checked, &answer.direction, measured);
@@ -707,13 +708,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return Some(Answer { support_calls: calls, ..answer.clone() });
         }
         let second = self.expand_ready(&mut query);
-        let better = match &recorder {
-            Some(recorder) if is_shallow(&second) => Fine::new(&self.polytope, &query, recorder).bracket(&second),
-            _ => None,
-        };
-        let second = match better {
-            Some((bracket, direction)) => query.refined(second, &bracket, direction),
-            None => second,
+        let second = match &recorder {
+            Some(recorder) if is_shallow(&second) => Fine::new(&mut self.polytope, &mut query, recorder).refine(second),
+            _ => second,
         };
         Some(second.or_wider(answer))
     }

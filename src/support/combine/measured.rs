@@ -75,8 +75,8 @@ impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
     fn mirrored(&self, signs: u8) -> bool {
         self.set.mirrored(signs)
     }
-    fn height_in_two_words(&self, u: &TwoWords<T, N>) -> Option<[T; 2]> {
-        self.set.height_in_two_words(u)
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        self.set.support_in_two_words(u)
     }
     fn contains_origin(&self) -> bool {
         self.set.contains_origin()
