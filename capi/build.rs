@@ -27,7 +27,8 @@ fn inlined(file: &Path, rules: &[Rule]) -> io::Result<String> {
     println!("cargo::rerun-if-changed={}", file.display());
     let mut text = String::new();
     for line in fs::read_to_string(file)?.lines() {
-        let child = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';'));
+        let item = line.strip_prefix("pub ").unwrap_or(line);
+        let child = item.strip_prefix("mod ").and_then(|rest| rest.strip_suffix(';'));
         if let Some(name) = child {
             let folder = file.parent().unwrap_or(file);
             let alone = folder.join(name).with_extension("rs");

@@ -4,3 +4,4 @@ s/f64/f32/g
 s/F64/F32/g
 s/DBL_MAX (float: FLT_MAX)/FLT_MAX/
 s/-DBL_MAX or FLT_MAX/-FLT_MAX or FLT_MAX/
+s/u64; 577/u64; 289/

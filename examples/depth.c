@@ -90,11 +90,11 @@ int main(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 64, 128)];
     enum { REPEAT = 2000, ROUNDS = 10 };
     qdist_solver *solver;
-    qdist_status status = qdist_solver_init3_f64(memory, sizeof memory, 64, 128, &solver);
+    qdist_status status = qdist_solver_init_f64(memory, sizeof memory, 3, 64, 128, &solver);
     unsigned i, wrong = 0;
 
     if (status != QDIST_OK) {
-        fprintf(stderr, "qdist_solver_init3_f64: %s\n", qdist_status_string(status));
+        fprintf(stderr, "qdist_solver_init_f64: %s\n", qdist_status_string(status));
         return 1;
     }
     printf("%-24s %-21s %17s   %20s %20s  %-10s %6s %8s\n", "case", "reported", "reference", "lower", "upper", "outcome", "calls",

@@ -78,7 +78,7 @@ static void touch(int tick, qdist_contact_f64 *contacts, qdist_primitive_f64 *pr
         c->friction = QDIST_SOFT, c->mu = 0.6, c->mus = 0.004;
         c->force_cap = 10; /* newtons */
     }
-    must("contacts", qdist_passive_primitives_f64(contacts, FINGERS, &FRAME, primitives, &which));
+    must("contacts", qdist_primitives_f64(contacts, FINGERS, &FRAME, 0, 0, primitives, &which));
 }
 
 /* How far a wrench set has moved at most, when every primitive { center + disc x } did: the sum of what each did. */
@@ -154,8 +154,8 @@ int main(void) {
     int tick, i, searches = 0, missed = 0, unsafe_ticks = 0;
     pthread_t thread;
 
-    must("memory", qdist_solver_init6_f64(loop.memory, sizeof loop.memory, 18, 24, &loop.solver));
-    must("memory", qdist_solver_init6_f64(certifier.memory, sizeof certifier.memory, 128, 2048, &certifier.solver));
+    must("memory", qdist_solver_init_f64(loop.memory, sizeof loop.memory, 6, 18, 24, &loop.solver));
+    must("memory", qdist_solver_init_f64(certifier.memory, sizeof certifier.memory, 6, 128, 2048, &certifier.solver));
     printf("three soft fingertips, d_Q of their wrenches in N; forces in N\n");
     printf("%4s %11s %9s %9s %7s  %-20s %s\n", "tick", "certificate", "d from", "to", "wide", "fingers press", "of their limits");
     for (tick = 0; tick < TICKS; ++tick) {

@@ -81,7 +81,7 @@ static qdist_mesh *tube(uint32_t around, uint32_t across, double radius, void (*
             count += 2;
         }
     }
-    check(qdist_mesh_create(xyz[0], around * across, triangles[0], count, &which, &mesh), "qdist_mesh_create");
+    check(qdist_mesh_create(xyz[0], around * across, triangles[0], count, &mesh, &which), "qdist_mesh_create");
     check(qdist_mesh_certify(mesh, &certified), "qdist_mesh_certify");
     qdist_mesh_free(mesh);
     return certified;

@@ -37,7 +37,7 @@ static qdist_mesh *prism(const double (*polygon)[2], uint32_t corners, const uin
             triangles[count + 1][k] = sides[1][k];
         }
     }
-    status = qdist_mesh_create(xyz[0], 2 * corners, triangles[0], count, &which, &mesh);
+    status = qdist_mesh_create(xyz[0], 2 * corners, triangles[0], count, &mesh, &which);
     if (status != QDIST_OK) fprintf(stderr, "triangle or vertex %u: ", (unsigned)which);
     check(status, "qdist_mesh_create");
     report.struct_size = sizeof report;

@@ -26,8 +26,8 @@ static void sizes(void) {
                 const uint32_t nv = capacities[v], nf = capacities[f];
                 const int legal = nv >= dimension + 1 && nf >= 2 * dimension;
                 uint32_t bytes64 = 1, bytes32 = 1;
-                const qdist_status status64 = qdist_workspace_query_f64(dimension, nv, nf, &bytes64);
-                const qdist_status status32 = qdist_workspace_query_f32(dimension, nv, nf, &bytes32);
+                const qdist_status status64 = qdist_workspace_query(sizeof(double), dimension, nv, nf, &bytes64);
+                const qdist_status status32 = qdist_workspace_query(sizeof(float), dimension, nv, nf, &bytes32);
                 if (legal) {
                     CHECK(status64 == QDIST_OK && bytes64 == QDIST_WORKSPACE_BYTES_F64(dimension, nv, nf));
                     CHECK(status32 == QDIST_OK && bytes32 == QDIST_WORKSPACE_BYTES_F32(dimension, nv, nf));
@@ -42,11 +42,6 @@ static void sizes(void) {
 
 /* Exactly the bytes that the macro says: init writes nothing behind them, and a query stays inside. */
 static void bounds(void) {
-    typedef qdist_status (*init)(void *, uint32_t, uint32_t, uint32_t, qdist_solver **);
-    const init inits[] = {qdist_solver_init2_f64, qdist_solver_init3_f64, qdist_solver_init4_f64, qdist_solver_init5_f64,
-                          qdist_solver_init6_f64};
-    const init inits32[] = {qdist_solver_init2_f32, qdist_solver_init3_f32, qdist_solver_init4_f32, qdist_solver_init5_f32,
-                            qdist_solver_init6_f32};
     uint32_t dimension, i;
     for (dimension = 2; dimension <= 6; ++dimension) {
         const uint32_t nv = 3 * dimension, nf = 9 * dimension;
@@ -56,7 +51,7 @@ static void bounds(void) {
             qdist_solver *solver = NULL;
             if (block == NULL) return;
             memset(block, 0xa5, sizes[i] + 16);
-            CHECK((i ? inits32 : inits)[dimension - 2](block, sizes[i], nv, nf, &solver) == QDIST_OK);
+            CHECK((i ? qdist_solver_init_f32 : qdist_solver_init_f64)(block, sizes[i], dimension, nv, nf, &solver) == QDIST_OK);
             CHECK(block[sizes[i]] == 0xa5 && block[sizes[i] + 15] == 0xa5);
             free(block);
         }
@@ -85,7 +80,7 @@ static void layout(void) {
 
 static void grasp_layout(void) {
     CHECK(offsetof(qdist_finger_f64, words) == 16 && sizeof(qdist_finger_f64) == 16 + 577 * 8);
-    CHECK(offsetof(qdist_finger_f32, words) == 12 && sizeof(qdist_finger_f32) == 12 + 577 * 4);
+    CHECK(offsetof(qdist_finger_f32, words) == 16 && sizeof(qdist_finger_f32) == 16 + 289 * 8);
     CHECK(sizeof(qdist_finger_wrenches_f64) == sizeof(void *) + 8 && sizeof(qdist_pyramid_wrenches_f32) == sizeof(void *) + 8);
     CHECK(sizeof(qdist_layout_f64) == 16 && sizeof(qdist_layout_f32) == 12);
     CHECK(sizeof(qdist_preset_f64) == 4 * 8 + 16 + 8 && sizeof(qdist_preset_f32) == 4 * 4 + 12 + 8);

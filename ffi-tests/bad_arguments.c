@@ -32,33 +32,33 @@ static void memory_and_handles(void) {
     qdist_result_f64 result;
     uint32_t n = 7, dimension;
 
-    CHECK(qdist_solver_init3_f64(NULL, bytes, 64, 128, &solver) == QDIST_ERROR_NULL);
-    CHECK(qdist_solver_init3_f64(memory, bytes, 64, 128, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_solver_init3_f64(memory, bytes - 1, 64, 128, &solver) == QDIST_ERROR_WORKSPACE_SIZE);
-    CHECK(qdist_solver_init3_f64(memory, 0, 64, 128, &solver) == QDIST_ERROR_WORKSPACE_SIZE);
-    CHECK(qdist_solver_init3_f64((char *)memory + 4, bytes, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
-    CHECK(qdist_solver_init3_f64((char *)memory + 1, bytes, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
-    CHECK(qdist_solver_init3_f32((char *)memory + 4, bytes, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
-    CHECK(qdist_solver_init3_f64(memory, bytes, 3, 128, &solver) == QDIST_ERROR_CAPACITY);
-    CHECK(qdist_solver_init3_f64(memory, bytes, 64, 5, &solver) == QDIST_ERROR_CAPACITY);
-    CHECK(qdist_solver_init3_f64(memory, bytes, 65536, 128, &solver) == QDIST_ERROR_CAPACITY);
-    CHECK(qdist_solver_init3_f64(memory, UINT32_MAX, 64, UINT32_MAX, &solver) == QDIST_ERROR_CAPACITY);
+    CHECK(qdist_solver_init_f64(NULL, bytes, 3, 64, 128, &solver) == QDIST_ERROR_NULL);
+    CHECK(qdist_solver_init_f64(memory, bytes, 3, 64, 128, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_solver_init_f64(memory, bytes - 1, 3, 64, 128, &solver) == QDIST_ERROR_WORKSPACE_SIZE);
+    CHECK(qdist_solver_init_f64(memory, 0, 3, 64, 128, &solver) == QDIST_ERROR_WORKSPACE_SIZE);
+    CHECK(qdist_solver_init_f64((char *)memory + 4, bytes, 3, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_solver_init_f64((char *)memory + 1, bytes, 3, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_solver_init_f32((char *)memory + 4, bytes, 3, 64, 128, &solver) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_solver_init_f64(memory, bytes, 3, 3, 128, &solver) == QDIST_ERROR_CAPACITY);
+    CHECK(qdist_solver_init_f64(memory, bytes, 3, 64, 5, &solver) == QDIST_ERROR_CAPACITY);
+    CHECK(qdist_solver_init_f64(memory, bytes, 3, 65536, 128, &solver) == QDIST_ERROR_CAPACITY);
+    CHECK(qdist_solver_init_f64(memory, UINT32_MAX, 3, 64, UINT32_MAX, &solver) == QDIST_ERROR_CAPACITY);
     CHECK(solver == untouched);
     CHECK(memory[0] == 0);
 
     for (dimension = 0; dimension < 12; ++dimension) {
         const int known = dimension >= 2 && dimension <= 6;
         n = 7;
-        CHECK(qdist_workspace_query_f64(dimension, 64, 128, &n) == (known ? QDIST_OK : QDIST_ERROR_DIMENSION));
+        CHECK(qdist_workspace_query(sizeof(double), dimension, 64, 128, &n) == (known ? QDIST_OK : QDIST_ERROR_DIMENSION));
         CHECK(known || n == 7);
     }
     n = 7;
-    CHECK(qdist_workspace_query_f64(3, 64, 128, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_workspace_query_f64(6, 6, 128, &n) == QDIST_ERROR_CAPACITY && n == 7);
-    CHECK(qdist_workspace_query_f32(6, 7, 11, &n) == QDIST_ERROR_CAPACITY && n == 7);
+    CHECK(qdist_workspace_query(sizeof(double), 3, 64, 128, NULL) == QDIST_ERROR_NULL);
+    CHECK(qdist_workspace_query(sizeof(double), 6, 6, 128, &n) == QDIST_ERROR_CAPACITY && n == 7);
+    CHECK(qdist_workspace_query(sizeof(float), 6, 7, 11, &n) == QDIST_ERROR_CAPACITY && n == 7);
 
-    CHECK(qdist_solver_init3_f64(memory, bytes, 64, 128, &solver) == QDIST_OK && (void *)solver == (void *)memory);
-    CHECK(qdist_solver_init3_f32(other, sizeof other, 64, 128, &solver32) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(memory, bytes, 3, 64, 128, &solver) == QDIST_OK && (void *)solver == (void *)memory);
+    CHECK(qdist_solver_init_f32(other, sizeof other, 3, 64, 128, &solver32) == QDIST_OK);
     CHECK(qdist_body_box_f64(&a, &box) == QDIST_OK && qdist_body_box_f32(&a32, &box32) == QDIST_OK);
     memset(&depth, 0, sizeof depth);
     depth.struct_size = sizeof depth;
@@ -73,7 +73,7 @@ static void memory_and_handles(void) {
     CHECK(qdist_depth3_f32(solver, &a32, &a32, NULL, &depth32) == QDIST_ERROR_SCALAR);
     CHECK(qdist_solve4_f64(solver, &a.set, NULL, NULL, &result) == QDIST_ERROR_DIMENSION);
     CHECK(qdist_depth3_f64(solver, &a, &a, NULL, &depth) == QDIST_OK);
-    CHECK(qdist_solver_init6_f64(memory, sizeof memory, 64, 128, &solver6) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(memory, sizeof memory, 6, 64, 128, &solver6) == QDIST_OK);
     depth.upper = 7;
     CHECK(qdist_depth3_f64(solver6, &a, &a, NULL, &depth) == QDIST_ERROR_DIMENSION && depth.upper == 7);
     CHECK(qdist_solve6_f64(solver6, &a.set, NULL, NULL, &result) == QDIST_ERROR_DIMENSION);
@@ -162,18 +162,18 @@ static void lists(void) {
 
     memset(&hull, 0x55, sizeof hull);
     memcpy(&hull_before, &hull, sizeof hull);
-    CHECK(qdist_solver_init3_f64(memory, sizeof memory, 8, 16, &solver) == QDIST_OK);
-    CHECK(qdist_hull_prepare_f64(NULL, corners, 4, graph, words, solver) == QDIST_ERROR_NULL);
-    CHECK(qdist_hull_prepare_f64(&hull, NULL, 4, graph, words, solver) == QDIST_ERROR_NULL);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 4, NULL, words, solver) == QDIST_ERROR_NULL);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 4, graph, words, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 0, graph, words, solver) == QDIST_ERROR_ARGUMENT);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 4, graph, 3, solver) == QDIST_ERROR_WORKSPACE_SIZE);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 3, graph, words, solver) == QDIST_ERROR_FLAT);
-    CHECK(qdist_solver_init2_f64(other, sizeof other, 8, 16, &small) == QDIST_OK);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 4, graph, words, small) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_solver_init_f64(memory, sizeof memory, 3, 8, 16, &solver) == QDIST_OK);
+    CHECK(qdist_hull_prepare_f64(NULL, solver, corners, 4, NULL, NULL, graph, words) == QDIST_ERROR_NULL);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, NULL, 4, NULL, NULL, graph, words) == QDIST_ERROR_NULL);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, corners, 4, NULL, NULL, NULL, words) == QDIST_ERROR_NULL);
+    CHECK(qdist_hull_prepare_f64(&hull, NULL, corners, 4, NULL, NULL, graph, words) == QDIST_ERROR_NULL);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, corners, 0, NULL, NULL, graph, words) == QDIST_ERROR_ARGUMENT);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, corners, 4, NULL, NULL, graph, 3) == QDIST_ERROR_WORKSPACE_SIZE);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, corners, 3, NULL, NULL, graph, words) == QDIST_ERROR_FLAT);
+    CHECK(qdist_solver_init_f64(other, sizeof other, 2, 8, 16, &small) == QDIST_OK);
+    CHECK(qdist_hull_prepare_f64(&hull, small, corners, 4, NULL, NULL, graph, words) == QDIST_ERROR_DIMENSION);
     CHECK(memcmp(&hull, &hull_before, sizeof hull) == 0);
-    CHECK(qdist_hull_prepare_f64(&hull, corners, 4, graph, words, solver) == QDIST_OK);
+    CHECK(qdist_hull_prepare_f64(&hull, solver, corners, 4, NULL, NULL, graph, words) == QDIST_OK);
     hull.graph_len = 1;
     REFUSES(hull, &hull, QDIST_ERROR_ARGUMENT);
     hull.graph_len = words, hull.graph = NULL;
@@ -195,7 +195,7 @@ static void lists(void) {
     memset(&large, 0x55, sizeof large);
     memcpy(&large_before, &large, sizeof large);
 #define PREPARE(hull, points, count, graph, words, scratch, work) \
-    qdist_hull_large_prepare_f64(hull, points, count, graph, words, scratch, work, NULL, NULL)
+    qdist_hull_large_prepare_f64(hull, scratch, work, points, count, NULL, NULL, graph, words)
     CHECK(PREPARE(NULL, corners, 4, wide, wides, scratch, work) == QDIST_ERROR_NULL);
     CHECK(PREPARE(&large, NULL, 4, wide, wides, scratch, work) == QDIST_ERROR_NULL);
     CHECK(PREPARE(&large, corners, 4, NULL, wides, scratch, work) == QDIST_ERROR_NULL);
@@ -218,6 +218,38 @@ static void lists(void) {
     REFUSES(hull_large, &large, QDIST_ERROR_NULL);
 }
 
+/* Functions that the library has put into sets, bodies and unit sets. */
+static void by_hand(void) {
+    double direction[6] = {1, 0, 0, 0, 0, 0}, point[6], matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    qdist_points_f64 list = {corners, 4, 3};
+    qdist_box_f64 cube = {{1, 1, 1}};
+    qdist_set_f64 a, sum, image;
+    qdist_body_f64 body, points;
+    qdist_pair_f64 pair = {&a, &a, 3};
+    qdist_linear_f64 map = {&a, matrix, {0, 0, 0, 0, 0, 0}, 3, 3};
+    qdist_box_unit_f64 cuboid = {{1, 1, 1, 0, 0, 0}, 3};
+    qdist_segment_unit_f64 ray = {{1, 1, 1, 0, 0, 0}, 3};
+    qdist_unit_f64 unit, segment;
+
+    CHECK(qdist_set_points_f64(&a, &list) == QDIST_OK && qdist_body_box_f64(&body, &cube) == QDIST_OK);
+    CHECK(qdist_body_points_f64(&points, &list) == QDIST_OK && qdist_set_sum_f64(&sum, &pair) == QDIST_OK);
+    CHECK(qdist_set_linear_f64(&image, &map) == QDIST_OK && qdist_unit_box_f64(&unit, &cuboid) == QDIST_OK);
+    CHECK(qdist_unit_segment_f64(&segment, &ray) == QDIST_OK);
+    CHECK(body.set.support(NULL, direction, point) == QDIST_ERROR_NULL);
+    CHECK(body.set.support(&cube, NULL, point) == QDIST_ERROR_NULL);
+    CHECK(body.set.support(&cube, direction, NULL) == QDIST_ERROR_NULL);
+    CHECK(body.set.support(&cube, (double *)(void *)((char *)direction + 1), point) == QDIST_ERROR_ALIGNMENT);
+    CHECK(a.support(&list, NULL, point) == QDIST_ERROR_NULL && a.support(&list, direction, NULL) == QDIST_ERROR_NULL);
+    CHECK(points.set.support(NULL, direction, point) == QDIST_ERROR_NULL);
+    CHECK(sum.support(NULL, direction, point) == QDIST_ERROR_NULL && image.support(NULL, direction, point) == QDIST_ERROR_NULL);
+    CHECK(isnan(unit.value(NULL, direction)) && isnan(unit.value(&cuboid, NULL)));
+    CHECK(unit.point(&cuboid, direction, NULL) == QDIST_ERROR_NULL && unit.vertex(NULL, 0, point) == QDIST_ERROR_NULL);
+    ray.dimension = 100;
+    CHECK(isnan(segment.value(&ray, direction)));
+    a.support = NULL;
+    CHECK(image.support(&map, direction, point) == QDIST_ERROR_NULL);
+}
+
 static void sets_and_units(void) {
     qdist_points_f64 list = {corners, 4, 3};
     qdist_set_f64 a, b, made, before;
@@ -229,7 +261,6 @@ static void sets_and_units(void) {
     qdist_cross_unit_f64 cross = {{1, 1, 1, 0, 0, 0}, 3};
     qdist_ellipsoid_unit_f64 egg = {{1, 1, 1, 0, 0, 0}, matrix, 3};
     qdist_segment_unit_f64 ray = {{1, 1, 1, 0, 0, 0}, 3};
-    double direction[6] = {1, 0, 0, 0, 0, 0}, point[6];
     unsigned k;
 
     CHECK(qdist_set_points_f64(&a, &list) == QDIST_OK && qdist_set_points_f64(&b, &list) == QDIST_OK);
@@ -245,7 +276,7 @@ static void sets_and_units(void) {
     a.support = NULL;
     CHECK(qdist_set_difference_f64(&made, &pair) == QDIST_ERROR_NULL);
     CHECK(qdist_set_linear_f64(&made, &map) == QDIST_ERROR_NULL);
-    a.support = qdist_points_support_f64;
+    a.support = b.support;
     a.radius = -1;
     CHECK(qdist_set_difference_f64(&made, &pair) == QDIST_ERROR_ARGUMENT);
     a.radius = 0;
@@ -271,7 +302,6 @@ static void sets_and_units(void) {
     CHECK(qdist_unit_cross_f64(&unit, &cross) == QDIST_ERROR_DIMENSION);
     CHECK(qdist_unit_ellipsoid_f64(&unit, &egg) == QDIST_ERROR_DIMENSION);
     CHECK(qdist_unit_segment_f64(&unit, &ray) == QDIST_ERROR_DIMENSION);
-    CHECK(isnan(qdist_segment_unit_value_f64(&ray, direction)));
     cuboid.dimension = cross.dimension = egg.dimension = ray.dimension = 3;
     for (k = 0; k < 3; ++k) cuboid.half[k] = cross.semi_axes[k] = egg.semi_axes[k] = ray.end[k] = 0;
     CHECK(qdist_unit_box_f64(&unit, &cuboid) == QDIST_ERROR_ARGUMENT);
@@ -288,16 +318,8 @@ static void sets_and_units(void) {
     CHECK(qdist_unit_box_f64(&unit, NULL) == QDIST_ERROR_NULL && qdist_unit_box_f64(NULL, &cuboid) != QDIST_OK);
     CHECK(memcmp(&unit, &unit_before, sizeof unit) == 0);
 
-    /* Support functions called by hand. */
-    CHECK(qdist_box_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
-    CHECK(qdist_box_support_f64(&box, NULL, point) == QDIST_ERROR_NULL);
-    CHECK(qdist_box_support_f64(&box, direction, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_points_support_f64(&list, NULL, point) == QDIST_ERROR_NULL);
-    CHECK(qdist_points_support_f64(&list, direction, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_points3_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
-    CHECK(qdist_sum_support_f64(NULL, direction, point) == QDIST_ERROR_NULL);
-    CHECK(qdist_linear_support_f64(&map, direction, point) == QDIST_ERROR_NULL);
-    CHECK(isnan(qdist_box_unit_value_f64(NULL, direction)) && isnan(qdist_box_unit_value_f64(&cuboid, NULL)));
+    /* The library's own functions, called by hand. */
+    by_hand();
 }
 
 static qdist_solver *solver;
@@ -341,7 +363,7 @@ static void refused_options(qdist_status status) {
 
 static void queries(void) {
     unsigned k;
-    CHECK(qdist_solver_init3_f64(memory, sizeof memory, 64, 128, &solver) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(memory, sizeof memory, 3, 64, 128, &solver) == QDIST_OK);
     CHECK(qdist_body_box_f64(&first, &box) == QDIST_OK && qdist_body_box_f64(&second, &box) == QDIST_OK);
     CHECK(qdist_options_default_f64(&options) == QDIST_OK && qdist_options_default_f64(NULL) == QDIST_ERROR_NULL);
     CHECK(options.struct_size == sizeof options && options.relative == 1e-6 && options.absolute == 0);
@@ -411,7 +433,9 @@ static void queries(void) {
     CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_ARGUMENT);
     unit.ball_radius = 0;
     CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_NULL);
-    unit.value = qdist_box_unit_value_f64, unit.extent = NAN;
+    const qdist_box_unit_f64 cuboid = {{1, 1, 1, 0, 0, 0}, 3};
+    CHECK(qdist_unit_box_f64(&unit, &cuboid) == QDIST_OK);
+    unit.extent = NAN;
     CHECK(qdist_solve3_f64(solver, &first.set, &unit, NULL, &result) == QDIST_ERROR_NONFINITE);
 }
 
@@ -468,7 +492,7 @@ static void wrong_units(void) {
     qdist_solver *rays = NULL;
     double value = 0;
     unsigned k;
-    CHECK(qdist_solver_init3_f64(least, sizeof least, 4, 6, &rays) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(least, sizeof least, 3, 4, 6, &rays) == QDIST_OK);
     result.struct_size = sizeof result;
 #define GIVES(expected) CHECK(qdist_solve3_f64(rays, &first.set, &unit, NULL, &result) == (expected))
     memset(&unit, 0, sizeof unit);
@@ -561,12 +585,11 @@ static void warm_starts(void) {
     CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, 0.25, &lower) == QDIST_OK && lower > 0.74 && lower <= 0.75);
     CHECK(qdist_tracker_lower_after_f64(&tracker, NULL, -1, &lower) == QDIST_OK && lower < -1e300);
 
-    CHECK(qdist_solve_in_span3_f64(NULL, &first.set, NULL, NULL, &result) == QDIST_ERROR_NULL);
-    CHECK(qdist_solve_in_span3_f64(solver, NULL, NULL, NULL, &result) == QDIST_ERROR_NULL);
-    CHECK(qdist_solve_in_span3_f64(solver, &first.set, NULL, NULL, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_solve_in_span2_f64(solver, &first.set, NULL, NULL, &result) == QDIST_ERROR_DIMENSION);
+    CHECK(qdist_solve_in_span_f64(NULL, &first.set, NULL, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_in_span_f64(solver, NULL, NULL, NULL, &result) == QDIST_ERROR_NULL);
+    CHECK(qdist_solve_in_span_f64(solver, &first.set, NULL, NULL, NULL) == QDIST_ERROR_NULL);
     result.struct_size = 0;
-    CHECK(qdist_solve_in_span3_f64(solver, &first.set, NULL, NULL, &result) == QDIST_ERROR_STRUCT_SIZE);
+    CHECK(qdist_solve_in_span_f64(solver, &first.set, NULL, NULL, &result) == QDIST_ERROR_STRUCT_SIZE);
     CHECK(WARM(0) == QDIST_ERROR_STRUCT_SIZE);
 #undef WARM
 #undef REFUSED

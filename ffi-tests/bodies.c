@@ -322,7 +322,7 @@ static void Q(joined_sets)(void) {
     Q(qdist_set) a, b, join, unknown;
     Q(qdist_pair) pair;
     Q(qdist_result) result;
-    CHECK(Q(qdist_solver_init4)(memory, sizeof memory, 64, 256, &solver) == QDIST_OK);
+    CHECK(Q(qdist_solver_init)(memory, sizeof memory, 4, 64, 256, &solver) == QDIST_OK);
     CHECK(Q(qdist_set_points)(&a, &large) == QDIST_OK && Q(qdist_set_points)(&b, &tip) == QDIST_OK);
     a.radius = 1;
     b.radius = 0.5f;
@@ -394,8 +394,8 @@ static void Q(shallow)(void) {
 }
 
 static void JOIN(bodies, SUFFIX)(void) {
-    CHECK(Q(qdist_solver_init2)(Q(memory2), sizeof Q(memory2), 32, 32, &Q(solver2)) == QDIST_OK);
-    CHECK(Q(qdist_solver_init3)(Q(memory3), sizeof Q(memory3), 128, 256, &Q(solver3)) == QDIST_OK);
+    CHECK(Q(qdist_solver_init)(Q(memory2), sizeof Q(memory2), 2, 32, 32, &Q(solver2)) == QDIST_OK);
+    CHECK(Q(qdist_solver_init)(Q(memory3), sizeof Q(memory3), 3, 128, 256, &Q(solver3)) == QDIST_OK);
     Q(plane_shapes)();
     Q(plane_arguments)();
     Q(half_planes)();

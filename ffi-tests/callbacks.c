@@ -126,7 +126,7 @@ static void used_while_it_runs(void) {
     CHECK(qdist_solve3_f64(solver, &set, &unit, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
     CHECK(result.lower <= 1 && result.upper >= 1 && result.upper < 1.00001);
     inner = QDIST_OK;
-    CHECK(qdist_solve_in_span3_f64(solver, &set, &unit, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
+    CHECK(qdist_solve_in_span_f64(solver, &set, &unit, NULL, &result) == QDIST_OK && inner == QDIST_ERROR_BUSY);
     inner = QDIST_OK;
     CHECK(qdist_tracker_init_f64(&tracker, 3) == QDIST_OK);
     for (int tick = 0; tick < 2; ++tick)
@@ -193,8 +193,8 @@ static void numbers_that_are_none(void) {
 }
 
 int main(void) {
-    CHECK(qdist_solver_init3_f64(memory, sizeof memory, 64, 128, &solver) == QDIST_OK);
-    CHECK(qdist_solver_init3_f64(other, sizeof other, 64, 128, &second) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(memory, sizeof memory, 3, 64, 128, &solver) == QDIST_OK);
+    CHECK(qdist_solver_init_f64(other, sizeof other, 3, 64, 128, &second) == QDIST_OK);
     wrong_shortcuts();
     used_while_it_runs();
     numbers_that_are_none();

@@ -58,8 +58,7 @@ constexpr std::size_t WALK_FROM = 33;  // vertices; the peers change from scan t
         static constexpr auto body_points = qdist_body_points_##suffix;                                           \
         static constexpr auto body_hull = qdist_body_hull_##suffix;                                               \
         static constexpr auto hull_prepare = qdist_hull_prepare_##suffix;                                         \
-        static constexpr auto workspace_query = qdist_workspace_query_##suffix;                                   \
-        static constexpr auto solver_init = qdist_solver_init3_##suffix;                                          \
+        static constexpr auto solver_init = qdist_solver_init_##suffix;                                           \
         static constexpr auto options_default = qdist_options_default_##suffix;                                   \
         static constexpr auto depth3 = qdist_depth3_##suffix;                                                     \
     };
@@ -130,15 +129,15 @@ private:
     qdist_status prepare_walk(uint32_t count) {
         const uint32_t facets = 2 * count + 16;
         uint32_t bytes = 0;
-        qdist_status status = Q::workspace_query(3, count, facets, &bytes);
+        qdist_status status = qdist_workspace_query(sizeof(typename Q::Real), 3, count, facets, &bytes);
         if (status != QDIST_OK) return status;
         static_assert(QDIST_WORKSPACE_ALIGN <= __STDCPP_DEFAULT_NEW_ALIGNMENT__, "operator new aligns enough");
         std::vector<unsigned char> memory(bytes);
         qdist_solver *solver = nullptr;
-        status = Q::solver_init(memory.data(), bytes, count, facets, &solver);
+        status = Q::solver_init(memory.data(), bytes, 3, count, facets, &solver);
         if (status != QDIST_OK) return status;
         graph.resize(QDIST_HULL_GRAPH_LEN(count));
-        status = Q::hull_prepare(&hull, points.data(), count, graph.data(), static_cast<uint32_t>(graph.size()), solver);
+        status = Q::hull_prepare(&hull, solver, points.data(), count, nullptr, nullptr, graph.data(), static_cast<uint32_t>(graph.size()));
         return status == QDIST_OK ? Q::body_hull(&body, &hull) : status;
     }
 };
@@ -151,7 +150,7 @@ public:
         Q::options_default(&options_);
         options_.relative = static_cast<typename Q::Real>(Q::relative);
         options_.absolute = static_cast<typename Q::Real>(Q::absolute * c.size);
-        status_ = Q::solver_init(memory, sizeof memory, MAX_VERTICES, MAX_FACETS, &solver_);
+        status_ = Q::solver_init(memory, sizeof memory, 3, MAX_VERTICES, MAX_FACETS, &solver_);
         if (status_ == QDIST_OK) status_ = a_.prepare(c.a);
         if (status_ == QDIST_OK) status_ = b_.prepare(c.b);
     }

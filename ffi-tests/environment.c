@@ -96,7 +96,7 @@ static void S(holds)(const char *what, const S(qdist_body) *a, const S(qdist_bod
     memset(&depth, 0, sizeof depth);
     depth.struct_size = sizeof depth;
     enter();
-    status = S(qdist_solver_init3)(memory, sizeof memory, 64, 128, &solver);
+    status = S(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &solver);
     if (status == QDIST_OK) status = S(qdist_depth3)(solver, a, b, NULL, &depth);
     leave();
     CHECK(status == QDIST_OK);
@@ -169,7 +169,7 @@ static void S(units)(void) {
             status |= kind == 0   ? S(qdist_unit_box)(&unit, &cube)
                       : kind == 1 ? S(qdist_unit_ellipsoid)(&unit, &egg)
                                   : S(qdist_unit_cross)(&unit, &cross);
-            status |= S(qdist_solver_init3)(memory, sizeof memory, 64, 128, &solver);
+            status |= S(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &solver);
             status |= S(qdist_solve3)(solver, &body.set, &unit, NULL, &result);
             leave();
             CHECK(status == QDIST_OK);
@@ -191,7 +191,7 @@ static void S(units)(void) {
         result.struct_size = sizeof result;
         enter();
         qdist_status status = S(qdist_set_points)(&set, &list);
-        status |= S(qdist_solver_init6)(memory, sizeof memory, 64, 2048, &solver);
+        status |= S(qdist_solver_init)(memory, sizeof memory, 6, 64, 2048, &solver);
         status |= S(qdist_solve6)(solver, &set, NULL, NULL, &result);
         leave();
         CHECK(status == QDIST_OK);
@@ -269,7 +269,7 @@ static void S(random_boxes)(void) {
         memset(&depth, 0, sizeof depth);
         depth.struct_size = sizeof depth;
         enter();
-        status = S(qdist_solver_init3)(memory, sizeof memory, 64, 128, &solver);
+        status = S(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &solver);
         if (status == QDIST_OK) status = S(qdist_depth3)(solver, &a, &b, NULL, &depth);
         leave();
         CHECK(status == QDIST_OK);

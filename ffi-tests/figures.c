@@ -41,7 +41,7 @@ static void points_in_six_dimensions(void) {
     qdist_result_f64 result;
     memset(&set, 0, sizeof set);
     set.support = ellipsoid, set.extent = 7;
-    if (qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver) || qdist_options_default_f64(&options)) failures++;
+    if (qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver) || qdist_options_default_f64(&options)) failures++;
     options.relative = 1e-9;
     result.struct_size = sizeof result;
     if (qdist_solve6_f64(solver, &set, NULL, &options, &result) || result.iterations != 50000) failures++;
@@ -62,8 +62,8 @@ static void make_grasp(void) {
         tips[i].friction = QDIST_SOFT, tips[i].mu = 0.5, tips[i].mus = 0.1;
     }
     answer.struct_size = sizeof answer;
-    if (qdist_passive_primitives_f64(tips, TIPS, &frame, primitives, NULL) || qdist_set_wrenches_f64(&set, &grasp) ||
-        qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver) || qdist_solve6_f64(solver, &set, NULL, NULL, &answer))
+    if (qdist_primitives_f64(tips, TIPS, &frame, 0, 0, primitives, NULL) || qdist_set_wrenches_f64(&set, &grasp) ||
+        qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver) || qdist_solve6_f64(solver, &set, NULL, NULL, &answer))
         failures++;
 }
 
@@ -98,14 +98,16 @@ static void make_finger(void) {
         contacts[i].actuated = 1, contacts[i].joints = 8;
         for (int k = 0; k < 32; k++) contacts[i].jacobian[k] = (k * 7 + i * 5) % 11 * 0.1 + (k < 8);
     }
-    if (qdist_finger_init_f64(&finger, contacts, count, limited ? limits : NULL, QDIST_FORCE_MODEL_PASSIVE, &frame, 0, NULL)) failures++;
+    if (qdist_finger_init_f64(&finger, contacts, count, &frame, limited ? limits : NULL, QDIST_FORCE_MODEL_PASSIVE, 0, NULL)) failures++;
 }
 
+static const qdist_finger_wrenches_f64 hand = {&finger, 1, QDIST_LINF};
+static qdist_set_f64 asked;
+
 static void ask_finger(void) {
-    const qdist_finger_wrenches_f64 wrenches = {&finger, 1, QDIST_LINF};
     const double u[6] = {0.3, 1, -0.2, 0.1, 0.4, 0.5};
     double point[6];
-    if (qdist_finger_wrenches_support_f64((void *)&wrenches, u, point)) failures++;
+    if (asked.support(asked.user, u, point)) failures++;
 }
 
 int main(void) {
@@ -117,6 +119,7 @@ int main(void) {
     for (limited = 0; limited < 2; limited++) {
         for (count = 1; count <= 4; count += 3) {
             printf("finger of %u contacts %s: made %.1f", count, limited ? "with limits" : "without limits", least(make_finger, 50));
+            if (qdist_set_finger_wrenches_f64(&asked, &hand)) failures++;
             printf(", asked %.2f\n", least(ask_finger, 200));
         }
     }

@@ -53,7 +53,7 @@ static void draw(void) {
 
 static void create(void) {
     qdist_mesh_free(mesh);
-    if (qdist_mesh_create(xyz, VERTICES, triangles, TRIANGLES, NULL, &mesh)) failures++;
+    if (qdist_mesh_create(xyz, VERTICES, triangles, TRIANGLES, &mesh, NULL)) failures++;
 }
 
 static void certify(void) {

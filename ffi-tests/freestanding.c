@@ -41,7 +41,7 @@ static int run(void) {
     qdist_body_f32 a, b;
     qdist_depth_f32 depth;
 
-    if (qdist_solver_init3_f32(memory, sizeof memory, 32, 64, &solver) != QDIST_OK) return 1;
+    if (qdist_solver_init_f32(memory, sizeof memory, 3, 32, 64, &solver) != QDIST_OK) return 1;
     if (qdist_body_box_f32(&a, &box) != QDIST_OK || qdist_body_box_f32(&b, &box) != QDIST_OK) return 2;
     b.translation[0] = 1.25f;
     b.translation[1] = 0.5f;

@@ -62,7 +62,7 @@ static qdist_mesh *box(double x, double y, double z, uint32_t triangles) {
     double xyz[24];
     qdist_mesh *mesh = NULL;
     box_corners(x, y, z, xyz);
-    CHECK(qdist_mesh_create(xyz, 8, BOX, triangles, NULL, &mesh) == QDIST_OK && mesh != NULL);
+    CHECK(qdist_mesh_create(xyz, 8, BOX, triangles, &mesh, NULL) == QDIST_OK && mesh != NULL);
     return mesh;
 }
 
@@ -88,9 +88,9 @@ static void refused(const double *xyz, uint32_t vertices, const uint32_t *triang
     qdist_mesh *const mark = (qdist_mesh *)(void *)&untouched;
     qdist_mesh *mesh = mark;
     uint32_t which = 77;
-    CHECK(qdist_mesh_create(xyz, vertices, triangles, count, &which, &mesh) == status);
+    CHECK(qdist_mesh_create(xyz, vertices, triangles, count, &mesh, &which) == status);
     CHECK(mesh == mark && which == place);
-    CHECK(qdist_mesh_create(xyz, vertices, triangles, count, NULL, &mesh) == status && mesh == mark);
+    CHECK(qdist_mesh_create(xyz, vertices, triangles, count, &mesh, NULL) == status && mesh == mark);
 }
 
 static void bad_meshes(void) {
@@ -103,8 +103,8 @@ static void bad_meshes(void) {
     refused(NULL, 8, BOX, 12, QDIST_ERROR_NULL, 77);
     refused(xyz, 8, NULL, 12, QDIST_ERROR_NULL, 77);
     CHECK(qdist_mesh_create(xyz, 8, BOX, 12, NULL, NULL) == QDIST_ERROR_NULL);
-    CHECK(qdist_mesh_create(xyz, 8, BOX, 12, (uint32_t *)(void *)(bytes + 1 + ((size_t)bytes & 1)), &mesh) == QDIST_ERROR_ALIGNMENT);
-    CHECK(qdist_mesh_create((double *)(void *)(bytes + 1 + ((size_t)bytes & 1)), 8, BOX, 12, NULL, &mesh) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_mesh_create(xyz, 8, BOX, 12, &mesh, (uint32_t *)(void *)(bytes + 1 + ((size_t)bytes & 1))) == QDIST_ERROR_ALIGNMENT);
+    CHECK(qdist_mesh_create((double *)(void *)(bytes + 1 + ((size_t)bytes & 1)), 8, BOX, 12, &mesh, NULL) == QDIST_ERROR_ALIGNMENT);
     refused(xyz, 8, BOX, 0, QDIST_ERROR_MESH_EMPTY, 77);
     refused(NULL, 0, NULL, 0, QDIST_ERROR_MESH_EMPTY, 77);
     refused(NULL, 0, BOX, 12, QDIST_ERROR_MESH_INDEX, 0);
@@ -159,7 +159,7 @@ static void reports(void) {
     memcpy(triangles, BOX, sizeof BOX);
     memcpy(triangles + 36, BOX, 3 * sizeof *BOX);
     triangles[39] = triangles[40] = 2, triangles[41] = 5;
-    CHECK(qdist_mesh_create(xyz, 9, triangles, 14, NULL, &broken) == QDIST_OK && qdist_mesh_check(broken, &report) == QDIST_OK);
+    CHECK(qdist_mesh_create(xyz, 9, triangles, 14, &broken, NULL) == QDIST_OK && qdist_mesh_check(broken, &report) == QDIST_OK);
     CHECK(report.clean == 0 && report.unreferenced_vertices == 1 && report.first_unreferenced_vertex == 8);
     CHECK(report.duplicate_triangles == 1 && report.first_duplicate_triangle == 12);
     CHECK(report.degenerate_triangles == 1 && report.first_degenerate_triangle == 13);

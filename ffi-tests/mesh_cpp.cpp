@@ -8,7 +8,7 @@ int main() {
     const qdist_mesh_pose pose = {{1, 0, 0, 0}, {0, 0, 0.9}};
     qdist_mesh *body = nullptr;
     qdist_mesh_pair *pair = nullptr;
-    CHECK(qdist_mesh_create(xyz, 4, triangles, 4, nullptr, &body) == QDIST_OK);
+    CHECK(qdist_mesh_create(xyz, 4, triangles, 4, &body, nullptr) == QDIST_OK);
     CHECK(qdist_mesh_pair_create(body, body, &pair) == QDIST_OK);
     // Memory has been allocated, so it is too late for another allocator.
     static const qdist_allocator late = {[](void *, size_t, size_t) -> void * { return nullptr; }, [](void *, void *, size_t, size_t) {}, nullptr};

@@ -373,11 +373,8 @@ static void Q(units)(qdist_solver *solver) {
 /* Any dimension: a cube of half size 1 around (0.25, 0, ...) by its corners, and a box made as a sum of segments. */
 static void Q(dimensions)(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 256, 40000)];
-    typedef qdist_status (*init)(void *, uint32_t, uint32_t, uint32_t, qdist_solver **);
     typedef qdist_status (*solve)(qdist_solver *, const Q(qdist_set) *, const Q(qdist_unit) *, const Q(qdist_options) *,
                                   Q(result) *);
-    const init inits[] = {Q(qdist_solver_init2), Q(qdist_solver_init3), Q(qdist_solver_init4), Q(qdist_solver_init5),
-                          Q(qdist_solver_init6)};
     const solve solves[] = {Q(qdist_solve2), Q(qdist_solve3), Q(qdist_solve4), Q(qdist_solve5), Q(qdist_solve6)};
     REAL corners[64 * 6];
     uint32_t n, i, k;
@@ -393,7 +390,7 @@ static void Q(dimensions)(void) {
         REAL matrix[36];
         qdist_solver *solver = NULL;
 
-        CHECK(inits[n - 2](memory, sizeof memory, 256, n < 5 ? 4000 : 40000, &solver) == QDIST_OK && solver != NULL);
+        CHECK(Q(qdist_solver_init)(memory, sizeof memory, n, 256, n < 5 ? 4000 : 40000, &solver) == QDIST_OK && solver != NULL);
         for (i = 0; i < 1u << n; ++i)
             for (k = 0; k < n; ++k) corners[i * n + k] = (REAL)((i >> k & 1 ? 1 : -1) + (k == 0 ? 0.25 : 0));
         list.points = corners, list.count = 1u << n, list.dimension = n;
@@ -505,7 +502,7 @@ static void Q(plans)(void) {
     int i, tick;
 
     CHECK(BYTES(6, 80, 512) <= sizeof memory);
-    CHECK(Q(qdist_solver_init6)(memory, sizeof memory, 80, 512, &solver) == QDIST_OK);
+    CHECK(Q(qdist_solver_init)(memory, sizeof memory, 6, 80, 512, &solver) == QDIST_OK);
     CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
     memset(&w, 0, sizeof w);
     memset(&set, 0, sizeof set);
@@ -623,13 +620,13 @@ static void Q(flat)(qdist_solver *solver) {
     result.struct_size = sizeof result;
     CHECK(Q(qdist_body_box)(&body, &plate) == QDIST_OK && body.set.mirrored != NULL && body.set.mirrored(NULL, 7) == 1);
     CHECK(Q(qdist_solve3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_DEGENERATE);
-    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
+    CHECK(Q(qdist_solve_in_span)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
     CHECK(result.dimension == 2 && Q(brackets)(result.lower, result.upper, 0.5) && fabs(fabs(result.direction[1]) - 1) < 1e-3);
     CHECK(Q(qdist_body_box)(&body, &needle) == QDIST_OK);
-    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
+    CHECK(Q(qdist_solve_in_span)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
     CHECK(result.dimension == 1 && Q(brackets)(result.lower, result.upper, 2.0) && result.has_rival == 1);
     CHECK(Q(qdist_body_box)(&body, &cube) == QDIST_OK);
-    CHECK(Q(qdist_solve_in_span3)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.dimension == 3);
+    CHECK(Q(qdist_solve_in_span)(solver, &body.set, NULL, NULL, &result) == QDIST_OK && result.dimension == 3);
     CHECK(Q(brackets)(result.lower, result.upper, 1.0) && strcmp(qdist_plan_string(result.plan), "expansion") == 0);
 
     CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
@@ -669,8 +666,8 @@ static void Q(hulls)(qdist_solver *solver) {
             points[3 * i + 1] = (REAL)(r * sin(t));
             points[3 * i + 2] = (REAL)z;
         }
-        CHECK(Q(qdist_solver_init3)(memory, sizeof memory, 4, 2 * COUNT, &workspace) == QDIST_OK);
-        CHECK(Q(qdist_hull_prepare)(&hull, points, COUNT, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_OK);
+        CHECK(Q(qdist_solver_init)(memory, sizeof memory, 3, 4, 2 * COUNT, &workspace) == QDIST_OK);
+        CHECK(Q(qdist_hull_prepare)(&hull, workspace, points, COUNT, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(COUNT)) == QDIST_OK);
         list.points = points, list.count = COUNT, list.dimension = 3;
         CHECK(Q(qdist_body_hull)(&a, &hull) == QDIST_OK && Q(qdist_body_points)(&b, &list) == QDIST_OK);
         CHECK((a.spread > 0) == far && (b.spread > 0) == far);
@@ -680,24 +677,24 @@ static void Q(hulls)(qdist_solver *solver) {
         two = Q(ask)(solver, &b, &c, NULL);
         CHECK(one.lower <= two.upper && two.lower <= one.upper && one.upper - one.lower < 1e-3);
         CHECK(fabs(one.upper - (2 - sqrt(0.25 + 0.5625))) < 0.05 && Q(consistent)(&one, 1));
-        CHECK(Q(qdist_hull_large_prepare)(&large, points, COUNT, large_graph, room, scratch, work, NULL, NULL) == QDIST_OK);
+        CHECK(Q(qdist_hull_large_prepare)(&large, scratch, work, points, COUNT, NULL, NULL, large_graph, room) == QDIST_OK);
         CHECK(Q(qdist_body_hull_large)(&d, &large) == QDIST_OK && (d.spread > 0) == far);
         two = Q(ask)(solver, &d, &c, NULL);
         CHECK(one.lower == two.lower && one.upper == two.upper && one.iterations == two.iterations);
     }
     memset(&w, 0, sizeof w);
-    CHECK(Q(qdist_hull_prepare_until)(&hull, points, COUNT, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace, Q(clock), &w) ==
+    CHECK(Q(qdist_hull_prepare)(&hull, workspace, points, COUNT, Q(clock), &w, graph, QDIST_HULL_GRAPH_LEN(COUNT)) ==
           QDIST_ERROR_INTERRUPTED);
-    CHECK(Q(qdist_hull_large_prepare)(&large, points, COUNT, large_graph, room, scratch, work, Q(clock), &w) ==
+    CHECK(Q(qdist_hull_large_prepare)(&large, scratch, work, points, COUNT, Q(clock), &w, large_graph, room) ==
           QDIST_ERROR_INTERRUPTED);
     points[3] = points[0], points[4] = points[1], points[5] = points[2];
-    CHECK(Q(qdist_hull_prepare)(&hull, points, 3, graph, QDIST_HULL_GRAPH_LEN(COUNT), workspace) == QDIST_ERROR_FLAT);
+    CHECK(Q(qdist_hull_prepare)(&hull, workspace, points, 3, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(COUNT)) == QDIST_ERROR_FLAT);
 }
 
 static void Q(smoke)(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 128, 256)];
     qdist_solver *solver = NULL;
-    CHECK(Q(qdist_solver_init3)(memory, BYTES(3, 128, 256), 128, 256, &solver) == QDIST_OK);
+    CHECK(Q(qdist_solver_init)(memory, BYTES(3, 128, 256), 3, 128, 256, &solver) == QDIST_OK);
     if (solver == NULL) return;
     Q(pairs)(solver);
     Q(limits)(solver);

@@ -39,7 +39,7 @@ static void nothing(void) {}
         qdist_box_##scalar box = {{(real)1, (real)2, (real)3}};                                  \
         qdist_body_##scalar a, b;                                                                \
         qdist_depth_##scalar depth;                                                              \
-        if (qdist_solver_init3_##scalar(memory, sizeof memory, 64, 128, &solver)) failures++;    \
+        if (qdist_solver_init_##scalar(memory, sizeof memory, 3, 64, 128, &solver)) failures++;    \
         if (qdist_body_box_##scalar(&a, &box) || qdist_body_box_##scalar(&b, &box)) failures++;  \
         for (int i = 0; i < 40; i++) { /* overlapping, touching, apart; edges against faces */   \
             real c = (real)0.8, s = (real)0.6;                                                   \
@@ -76,12 +76,12 @@ static void six(int plan) {
     qdist_result_f64 result;
     memset(&set, 0, sizeof set);
     set.support = rounded;
-    if (qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver)) failures++;
+    if (qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver)) failures++;
     if (qdist_unit_box_f64(&unit, &cube) || qdist_options_default_f64(&options)) failures++;
     if (qdist_tracker_init_f64(&tracker, 6)) failures++;
     options.relative = 1e-2;
     result.struct_size = sizeof result;
-    if (plan == 2 && qdist_solve_in_span6_f64(solver, &set, NULL, &options, &result)) failures++;
+    if (plan == 2 && qdist_solve_in_span_f64(solver, &set, NULL, &options, &result)) failures++;
     for (int tick = 0; plan == 3 && tick < 2; tick++)
         if (qdist_solve_warm6_f64(solver, &tracker, &set, NULL, 0, &options, &result)) failures++;
     if (plan < 2 && qdist_solve6_f64(solver, &set, plan ? &unit : NULL, &options, &result)) failures++;
@@ -109,13 +109,14 @@ static void make_finger(void) {
         contacts[i].actuated = 1, contacts[i].joints = 8;
         for (int k = 0; k < 32; k++) contacts[i].jacobian[k] = (k * 7 + i * 5) % 11 * 0.1 + (k < 8);
     }
-    if (qdist_finger_init_f64(&finger, contacts, 4, limits, QDIST_FORCE_MODEL_ACTIVE, &frame, 0, NULL)) failures++;
+    if (qdist_finger_init_f64(&finger, contacts, 4, &frame, limits, QDIST_FORCE_MODEL_ACTIVE, 0, NULL)) failures++;
 }
 
 static void ask_finger(void) {
     const qdist_finger_wrenches_f64 wrenches = {&finger, 1, QDIST_LINF};
     double u[6] = {0.3, 1, -0.2, 0.1, 0.4, 0.5}, point[6], forces[16];
-    if (qdist_finger_wrenches_support_f64((void *)&wrenches, u, point) || qdist_finger_forces_f64(&finger, u, forces)) failures++;
+    qdist_set_f64 set;
+    if (qdist_set_finger_wrenches_f64(&set, &wrenches) || set.support(set.user, u, point) || qdist_finger_forces_f64(&finger, u, forces)) failures++;
 }
 
 static void distribute(void) {
@@ -141,13 +142,13 @@ static void primitives_of_tips(void) {
         for (int k = 0; k < 3; k++) tips[i].normal[k] = normals[i][k], tips[i].position[k] = -normals[i][k];
         tips[i].friction = QDIST_SOFT, tips[i].mu = 0.5, tips[i].mus = 0.1;
     }
-    if (qdist_passive_primitives_f64(tips, TIPS, &grasp_frame, primitives, NULL)) failures++;
+    if (qdist_primitives_f64(tips, TIPS, &grasp_frame, 0, 0, primitives, NULL)) failures++;
 }
 
 static void efficiency(void) {
     qdist_solver *solver;
     qdist_set_f64 set;
-    if (qdist_set_wrenches_f64(&set, &grasp) || qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver)) failures++;
+    if (qdist_set_wrenches_f64(&set, &grasp) || qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver)) failures++;
     grasp_result.struct_size = sizeof grasp_result;
     if (qdist_solve6_f64(solver, &set, NULL, NULL, &grasp_result)) failures++;
 }
@@ -157,7 +158,7 @@ static void closure(void) {
     qdist_set_f64 set;
     qdist_closure_f64 closed;
     closed.struct_size = sizeof closed;
-    if (qdist_set_wrenches_f64(&set, &grasp) || qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver)) failures++;
+    if (qdist_set_wrenches_f64(&set, &grasp) || qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver)) failures++;
     if (qdist_force_closure_f64(solver, &set, NULL, &closed) || closed.verdict != QDIST_CLOSURE_CLOSED) failures++;
 }
 

@@ -208,7 +208,7 @@ static void Q(arguments)(void) {
         for (int k = 0; k < 4; ++k) contact->jacobian[9 * k] = 1;
     }
     W.frame.torque_scale = 1;
-    Q(qdist_passive_primitives)(W.contacts, 3, &W.frame, W.primitives, NULL);
+    Q(qdist_primitives)(W.contacts, 3, &W.frame, 0, 0, W.primitives, NULL);
     W.wrenches.primitives = W.primitives, W.wrenches.count = 3, W.wrenches.norm = QDIST_LINF;
     for (int k = 0; k < 8; ++k) W.limits[k] = (REAL)0.7;
     W.layout.kind = QDIST_LAYOUT_INSCRIBED, W.layout.sides = 8;
@@ -253,7 +253,7 @@ static void Q(choose)(void) {
 #define FRAME_SLOT() slot(W.frame.reference, 3, ALL), slot(&W.frame.torque_scale, 1, ALL)
 #define PRIMITIVE_SLOT(primitive) slot((primitive).center, 6, ALL), slot((primitive).disc, 18, ALL), slot((primitive).rounding, 6, ALL)
 #define FINGER()                                                                                                       \
-    Q(qdist_finger_init)(&W.finger, W.contacts, 1, W.limits, QDIST_FORCE_MODEL_PASSIVE, &W.frame, 0, NULL), \
+    Q(qdist_finger_init)(&W.finger, W.contacts, 1, &W.frame, W.limits, QDIST_FORCE_MODEL_PASSIVE, 0, NULL), \
         W.fingers.fingers = &W.finger, W.fingers.count = 1, W.fingers.norm = QDIST_LINF
 #define PYRAMIDS()                                                                                       \
     Q(qdist_pyramids)(W.contacts, 3, &W.frame, &W.layout, W.edges, 30, W.pyramids, NULL), \
@@ -287,7 +287,7 @@ CASE(options_default, (output(&W.options, sizeof W.options, 0)), Q(qdist_options
 static void Q(tips)(unsigned n) {
     for (unsigned k = 0; k < n; ++k) W.tips[2 * n * k + k] = (REAL)(1 + 0.1 * k), W.tips[2 * n * k + n + k] = (REAL)(-1.1);
 }
-CASE(hull, (TIPS(3), slot(W.tips, 18, ALL), output(&W.hull, sizeof W.hull, 0)), Q(qdist_hull_prepare)(&W.hull, W.tips, 6, W.graph, sizeof W.graph / 2, Q(solver)[3]))
+CASE(hull, (TIPS(3), slot(W.tips, 18, ALL), output(&W.hull, sizeof W.hull, 0)), Q(qdist_hull_prepare)(&W.hull, Q(solver)[3], W.tips, 6, NULL, NULL, W.graph, sizeof W.graph / 2))
 CASE(depth3, (BODY_SLOT(W.a), BODY_SLOT(W.b), OPTIONS_SLOT(), output(&W.depth, sizeof W.depth, 1), numbers(&W.depth.lower, 2), numbers(W.depth.normal, 3), numbers(W.depth.point_a, 3), numbers(W.depth.point_b, 3)),
      Q(qdist_depth3)(Q(solver)[3], &W.a, &W.b, &W.options, &W.depth))
 CASE(depth3_far, (W.a.spread = 4, BODY_SLOT(W.a), slot(W.a.center, 3, ALL), output(&W.depth, sizeof W.depth, 1), numbers(&W.depth.lower, 2), numbers(W.depth.normal, 3), numbers(W.depth.point_a, 3), numbers(W.depth.point_b, 3)),
@@ -300,7 +300,7 @@ CASE(depth3_far, (W.a.spread = 4, BODY_SLOT(W.a), slot(W.a.center, 3, ALL), outp
     CASE(ball##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)),        \
          Q(qdist_solve##n)(Q(solver)[n], &W.set, NULL, &W.options, &W.result))                                                       \
     CASE(span##n, (TIPS(n), SET_SLOT(W.set), OPTIONS_SLOT(), UNIT_SLOT(), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)), \
-         Q(qdist_solve_in_span##n)(Q(solver)[n], &W.set, &W.unit, &W.options, &W.result))                                           \
+         Q(qdist_solve_in_span)(Q(solver)[n], &W.set, &W.unit, &W.options, &W.result))                                           \
     CASE(warm##n, (TIPS(n), Q(qdist_tracker_init)(&W.tracker, n), W.tracker.directions[0][0] = 1, SET_SLOT(W.set), OPTIONS_SLOT(), UNIT_SLOT(), slot(&W.moved, 1, ALL), \
                    slot(&W.tracker.lower, 1, ALL), slot(W.tracker.directions[0], n, ALL), output(&W.result, sizeof W.result, 1), RESULT_OUTPUT(W.result)),               \
          Q(qdist_solve_warm##n)(Q(solver)[n], &W.tracker, &W.set, &W.unit, W.moved, &W.options, &W.result))
@@ -314,9 +314,9 @@ CASE(lower_after, (TIPS(3), Q(qdist_tracker_init)(&W.tracker, 3), W.tracker.lowe
      Q(qdist_tracker_lower_after)(&W.tracker, &W.unit, W.moved, &W.lower))
 
 CASE(passive, (CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), output(W.primitives, sizeof W.primitives, 0), numbers(W.primitives[1].center, 25)),
-     Q(qdist_passive_primitives)(W.contacts, 3, &W.frame, W.primitives, &W.which))
+     Q(qdist_primitives)(W.contacts, 3, &W.frame, 0, 0, W.primitives, &W.which))
 CASE(actives, (CONTACT_SLOT(W.contacts[1]), slot(W.contacts[1].jacobian, 32, ALL), FRAME_SLOT(), slot(&W.tolerance, 1, ALL), output(W.primitives, sizeof W.primitives, 0), numbers(W.primitives[1].center, 25)),
-     Q(qdist_active_primitives)(W.contacts, 3, &W.frame, W.tolerance, W.primitives, &W.which))
+     Q(qdist_primitives)(W.contacts, 3, &W.frame, 1, W.tolerance, W.primitives, &W.which))
 CASE(active, (CONTACT_SLOT(W.contacts[1]), slot(W.contacts[1].jacobian, 32, ALL), FRAME_SLOT(), slot(&W.tolerance, 1, ALL), output(&W.active, sizeof W.active, 0), numbers(&W.active.delta, 1)),
      Q(qdist_active_forces)(&W.contacts[1], &W.frame, W.tolerance, &W.active))
 CASE(subspace, (PRIMITIVE_SLOT(W.primitives[1]), slot(&W.tolerance, 1, ALL), output(W.basis, sizeof W.basis, 0), output(&W.dimension, sizeof W.dimension, 0), numbers(W.basis, 36)),
@@ -339,7 +339,7 @@ CASE(gradients, (Q(qdist_set_wrenches)(&W.set, &W.wrenches), W.answer.struct_siz
                  output(&W.refined, sizeof W.refined, 1), output(W.gradients, sizeof W.gradients, 0), numbers(&W.refined.upper, 1), numbers(W.refined.direction, 6), numbers(W.gradients[1].position, 44)),
      Q(qdist_grasp_gradients)(&W.wrenches, W.contacts, 3, &W.frame, 0, 0, NULL, &W.answer, &W.refined, W.gradients, &W.which))
 CASE(finger_init, (CONTACT_SLOT(W.contacts[0]), slot(W.contacts[0].jacobian, 32, ALL), FRAME_SLOT(), slot(W.limits, 8, SOME), slot(&W.tolerance, 1, ALL)),
-     Q(qdist_finger_init)(&W.finger, W.contacts, 1, W.limits, QDIST_FORCE_MODEL_PASSIVE, &W.frame, W.tolerance, &W.which))
+     Q(qdist_finger_init)(&W.finger, W.contacts, 1, &W.frame, W.limits, QDIST_FORCE_MODEL_PASSIVE, W.tolerance, &W.which))
 CASE(set_fingers, (FINGER(), SET_OUTPUT(W.set)), Q(qdist_set_finger_wrenches)(&W.set, &W.fingers))
 CASE(finger_forces, (FINGER(), slot(W.six, 6, ALL), output(W.force, sizeof W.force, 0), numbers(W.force, 4)), Q(qdist_finger_forces)(&W.finger, W.six, W.force))
 CASE(finger_contact_forces, (FINGER(), slot(W.six, 6, ALL), slot(&W.force_options.relative, 1, ALL), slot(&W.force_options.limit, 1, ALL), output(W.shares, 6 * sizeof(REAL), 0), output(W.forces, 16 * sizeof(REAL), 0), output(&W.found, sizeof W.found, 1), numbers(W.shares, 6), numbers(W.forces, 16), numbers(&W.found.lower, 2), numbers(W.found.direction, 6), numbers(&W.found.residual, 1)),
@@ -352,7 +352,7 @@ CASE(frogger, (slot(&W.radius, 1, ALL), output(&W.preset, sizeof W.preset, 0), n
 CASE(pyramids, (CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), output(W.pyramids, sizeof W.pyramids, 0), output(W.edges, 30 * 6 * sizeof(REAL), 0), numbers(W.edges, 180)),
      Q(qdist_pyramids)(W.contacts, 3, &W.frame, &W.layout, W.edges, 30, W.pyramids, &W.which))
 CASE(set_pyramids, (PYRAMIDS(), slot(W.edges, 60, ALL), slot(&W.pyramids[1].extent, 1, ALL), slot(&W.pyramids[1].error, 1, ALL), SET_OUTPUT(W.set)), Q(qdist_set_pyramid_wrenches)(&W.set, &W.pyramid_wrenches))
-CASE(opposed, (PYRAMIDS(), slot(W.edges, 60, ALL), output(&W.segment, sizeof W.segment, 0), numbers(W.segment.end, 6)), Q(qdist_opposed_mean)(W.pyramids, 3, &W.segment))
+CASE(opposed, (PYRAMIDS(), slot(W.edges, 60, ALL), output(&W.segment, sizeof W.segment, 0), numbers(W.segment.end, 6)), Q(qdist_opposed_mean)(&W.segment, W.pyramids, 3))
 
 static const struct {
     const char *name;
@@ -386,9 +386,7 @@ static void Q(sweep)(void) {
     static const char *const verdicts[] = {"fine", "refused", "writes on error", "leaves bytes unwritten", "disagrees with itself"};
     const REAL values[] = {NAN, INFINITY, -INFINITY, LARGEST, -LARGEST, LARGEST / 100, (REAL)(LARGEST * 1e-10), (REAL)sqrt(LARGEST), -1, 0, SUBNORMAL, (REAL)1e-30};
     const unsigned many = sizeof values / sizeof *values;
-    qdist_status (*const init[])(void *, uint32_t, uint32_t, uint32_t, qdist_solver **) = {
-        Q(qdist_solver_init2), Q(qdist_solver_init3), Q(qdist_solver_init4), Q(qdist_solver_init5), Q(qdist_solver_init6)};
-    for (int n = 2; n <= 6; ++n) CHECK(init[n - 2](Q(memory)[n - 2], sizeof Q(memory)[0], 64, 512, &Q(solver)[n]) == QDIST_OK);
+    for (uint32_t n = 2; n <= 6; ++n) CHECK(Q(qdist_solver_init)(Q(memory)[n - 2], sizeof Q(memory)[0], n, 64, 512, &Q(solver)[n]) == QDIST_OK);
     for (unsigned c = 0; c < sizeof Q(cases) / sizeof *Q(cases); ++c) {
         qdist_status status;
         Q(at_slot) = SLOTS;

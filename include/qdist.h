@@ -10,7 +10,7 @@
  *     qdist_body_f64 a, b;
  *     qdist_depth_f64 depth;
  *
- *     qdist_solver_init3_f64(memory, sizeof memory, 64, 128, &solver);
+ *     qdist_solver_init_f64(memory, sizeof memory, 3, 64, 128, &solver);
  *     qdist_body_box_f64(&a, &box);
  *     qdist_body_sphere_f64(&b, &ball);
  *     b.translation[0] = 1.25;
@@ -27,6 +27,8 @@
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
+ * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
+ *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
@@ -48,7 +50,8 @@
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).
  * Frames      Right-handed. A body's pose takes points from its own frame to the world: x -> rotation * x + translation. All
  *             results are in the world frame.
- * Versions    Structs that may grow begin with struct_size, set by you to sizeof. Numbers of this header never change their
+ * Versions    Structs that may grow begin with struct_size, set by you to sizeof: a library of a later version takes those of an earlier header,
+ *             which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
  *             meaning; new ones may be added, so that unknown ones must be expected. */
 
 #ifndef QDIST_H
@@ -58,6 +61,20 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Before every function. Define QDIST_API yourself for an attribute of your own; or QDIST_DLL where you link a DLL that you have made of the
+ * library on Windows, and QDIST_DLL_EXPORT while you make it. */
+#ifndef QDIST_API
+#if defined(_WIN32) && defined(QDIST_DLL_EXPORT)
+#define QDIST_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(QDIST_DLL)
+#define QDIST_API __declspec(dllimport)
+#elif defined(__GNUC__) && !defined(_WIN32)
+#define QDIST_API __attribute__((visibility("default")))
+#else
+#define QDIST_API
+#endif
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -103,235 +120,247 @@ typedef struct qdist_solver qdist_solver;
  * Three questions, three types. A status says whether the call worked. An outcome says what the run concluded, and whatever
  * it concluded, the bracket holds. A plan says how. */
 
-// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a unit set returned NaN or a negative
-// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
+/// callback_code when a callback returned 0 but wrote NaN, infinity or nothing, or when a unit set returned NaN or a negative
+/// number. Callbacks must not return it, nor INT32_MIN + 1 to INT32_MIN + 3.
 #define QDIST_CALLBACK_NONFINITE (-2147483647 - 1)
 
-// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
-// with QDIST_ERROR_CALLBACK.
+/// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
+/// with QDIST_ERROR_CALLBACK.
 typedef int32_t qdist_status;
 
-// What did the run conclude?
+/// What did the run conclude?
 typedef int32_t qdist_outcome;
 
-// How was the query answered? What A and Q are decides it.
+/// How was the query answered? What A and Q are decides it.
 typedef int32_t qdist_plan;
 
-// Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
-// clock or at a flag that an interrupt handler sets. (While a hull is prepared: asked for every 1,024 points looked at.)
-//
-// user: interrupt_user of the options or the call.
+/// Asked before every iteration of a query; anything but 0 ends it with QDIST_INTERRUPTED and the best bracket so far. Look at a
+/// clock or at a flag that an interrupt handler sets. (While a hull is prepared: asked for every 1,024 points looked at.)
+///
+/// user: interrupt_user of the options or the call.
 typedef int32_t (*qdist_interrupt)(void *user);
 
-// The call worked.
+/// The call worked.
 #define QDIST_OK 0
 
-// A pointer that must not be NULL is NULL.
+/// A pointer that must not be NULL is NULL.
 #define QDIST_ERROR_NULL 1
 
-// A number is out of range: a negative size, an empty list, a flag that is neither 0 nor 1.
+/// A number is out of range: a negative size, an empty list, a flag that is neither 0 nor 1.
 #define QDIST_ERROR_ARGUMENT 2
 
-// An argument is NaN or infinite, or a length is above 2e292 (float: 2e31), so that sums could overflow.
+/// An argument is NaN or infinite, or a length is above 2e292 (float: 2e31), so that sums could overflow.
 #define QDIST_ERROR_NONFINITE 3
 
-// struct_size is not the size of a struct that this library knows.
+/// struct_size is not the size of a struct that this library knows.
 #define QDIST_ERROR_STRUCT_SIZE 4
 
-// The memory is shorter than QDIST_WORKSPACE_BYTES, QDIST_HULL_GRAPH_LEN or QDIST_HULL_LARGE_GRAPH_LEN says.
+/// The memory is shorter than QDIST_WORKSPACE_BYTES, QDIST_HULL_GRAPH_LEN or QDIST_HULL_LARGE_GRAPH_LEN says.
 #define QDIST_ERROR_WORKSPACE_SIZE 5
 
-// Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
+/// Memory or a struct is not aligned: solver memory to QDIST_WORKSPACE_ALIGN, all else to its type.
 #define QDIST_ERROR_ALIGNMENT 6
 
-// The dimension is not one of 2 to 6, or solver, set, unit set and function are not of the same dimension.
+/// The dimension is not one of 2 to 6, or solver, set, unit set and function are not of the same dimension.
 #define QDIST_ERROR_DIMENSION 7
 
-// The solver was made for the other scalar type.
+/// The solver was made for the other scalar type.
 #define QDIST_ERROR_SCALAR 8
 
-// max_vertices < dimension + 1, max_facets < 2 * dimension, or one of them above 65535; or a solver that is too small for
-// what it is to do.
+/// max_vertices < dimension + 1, max_facets < 2 * dimension, or one of them above 65535; or a solver that is too small for
+/// what it is to do.
 #define QDIST_ERROR_CAPACITY 9
 
-// The memory does not hold a solver.
+/// The memory does not hold a solver.
 #define QDIST_ERROR_SOLVER 10
 
-// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0. Or the quaternion is not of unit length,
-// to 1e-6.
+/// The matrix is not a rotation: an entry of R^T R - I is above 1e-4 in size, or det R < 0. Or the quaternion is not of unit length,
+/// to 1e-6.
 #define QDIST_ERROR_ROTATION 11
 
-// A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
+/// A callback failed: the result is filled, with outcome QDIST_SUPPORT_FAILED, a true bracket and the callback's code.
 #define QDIST_ERROR_CALLBACK 12
 
-// All points of a hull lie in one plane: use qdist_points.
+/// All points of a hull lie in one plane: use qdist_points.
 #define QDIST_ERROR_FLAT 13
 
-// A contact's position is not finite or too large.
+/// A contact's position is not finite or too large.
 #define QDIST_ERROR_CONTACT_POSITION 14
 
-// A contact's normal is not a unit vector.
+/// A contact's normal is not a unit vector.
 #define QDIST_ERROR_CONTACT_NORMAL 15
 
-// A contact's tangents are not unit vectors with n = o x t.
+/// A contact's tangents are not unit vectors with n = o x t.
 #define QDIST_ERROR_CONTACT_TANGENTS 16
 
-// A contact's friction model is not known, or a coefficient is negative, not finite or too large.
+/// A contact's friction model is not known, or a coefficient is negative, not finite or too large.
 #define QDIST_ERROR_CONTACT_FRICTION 17
 
-// A contact's force cap is negative, not finite or too large.
+/// A contact's force cap is negative, not finite or too large.
 #define QDIST_ERROR_CONTACT_CAP 18
 
-// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
+/// A contact's Jacobian has more than 8 joints, or a number that is not finite or too large.
 #define QDIST_ERROR_CONTACT_JACOBIAN 19
 
-// A contact's wrench is too large: a position or friction that is huge for the torque scale. Or a primitive's or pyramid's is not finite.
+/// A contact's wrench is too large: a position or friction that is huge for the torque scale. Or a primitive's or pyramid's is not finite.
 #define QDIST_ERROR_CONTACT_WRENCH 20
 
-// The reference point is not finite, or the torque scale is not a positive number of usual size.
+/// The reference point is not finite, or the torque scale is not a positive number of usual size.
 #define QDIST_ERROR_FRAME 21
 
-// A rank tolerance below 16 roundoffs or above 1/2.
+/// A rank tolerance below 16 roundoffs or above 1/2.
 #define QDIST_ERROR_TOLERANCE 22
 
-// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
+/// A finger's torque limits: one is negative or not a number, or there are not as many as joints.
 #define QDIST_ERROR_TORQUE_LIMIT 23
 
-// The memory does not hold a finger of this scalar type.
+/// The memory does not hold a finger of this scalar type.
 #define QDIST_ERROR_FINGER 24
 
-// A mesh has no triangles.
+/// A mesh has no triangles.
 #define QDIST_ERROR_MESH_EMPTY 25
 
-// A triangle of a mesh refers to a vertex that does not exist.
+/// A triangle of a mesh refers to a vertex that does not exist.
 #define QDIST_ERROR_MESH_INDEX 26
 
-// A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
+/// A coordinate of a mesh's vertex is NaN, infinite, or above 1e60 in size.
 #define QDIST_ERROR_MESH_VERTEX 27
 
-// All vertices that a mesh's triangles use lie on one line.
+/// All vertices that a mesh's triangles use lie on one line.
 #define QDIST_ERROR_MESH_COLLINEAR 28
 
-// What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
+/// What is asked for needs a solid, and the mesh bounds none: it is open, wound inconsistently or inward, or without volume.
 #define QDIST_ERROR_MESH_NOT_SOLID 29
 
-// The allocator is set already, or memory has been allocated without.
+/// The allocator is set already, or memory has been allocated without.
 #define QDIST_ERROR_ALLOCATOR 30
 
-// A defect of the library, which went no further. Please report it.
+/// A defect of the library, which went no further. Please report it.
 #define QDIST_ERROR_INTERNAL 31
 
-// A callback uses the solver, pair or tracker that is calling it.
+/// A callback uses the solver, pair or tracker that is calling it.
 #define QDIST_ERROR_BUSY 32
 
-// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
+/// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
 #define QDIST_ERROR_UNBOUNDED 33
 
-// `interrupt` of qdist_hull_prepare_until or qdist_hull_large_prepare said so.
+/// `interrupt` of qdist_hull_prepare or qdist_hull_large_prepare said so.
 #define QDIST_ERROR_INTERRUPTED 34
 
-// A hull of more points, or with more vertices, than the words of its graph can number: see QDIST_HULL_POINTS.
+/// A hull of more points, or with more vertices, than the words of its graph can number: see QDIST_HULL_POINTS.
 #define QDIST_ERROR_HULL_POINTS 35
 
-// The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
+/// The bracket is as narrow as asked for, and the origin is inside: 0 < lower.
 #define QDIST_CONVERGED 0
 
-// Stopped early: lower >= threshold.
+/// Stopped early: lower >= threshold.
 #define QDIST_ABOVE 1
 
-// Stopped early: upper < threshold.
+/// Stopped early: upper < threshold.
 #define QDIST_BELOW 2
 
-// The origin is outside: upper < 0, and the bracket is that of minus the Euclidean distance.
+/// The origin is outside: upper < 0, and the bracket is that of minus the Euclidean distance.
 #define QDIST_SEPARATED 3
 
-// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
+/// The bracket is as narrow as asked for, or as arithmetic allows, and contains 0.
 #define QDIST_TOUCHING 4
 
-// The bracket cannot be narrowed in this scalar type; the tolerance asked for more.
+/// The bracket cannot be narrowed in this scalar type; the tolerance asked for more.
 #define QDIST_PRECISION 5
 
-// The solver's memory is full. (qdist_solve goes on cone by cone, QDIST_PLAN_CONES, where there are 3 * dimension vertices and
-// 4 * dimension facets.)
+/// The solver's memory is full. (qdist_solve goes on cone by cone, QDIST_PLAN_CONES, where there are 3 * dimension vertices and
+/// 4 * dimension facets.)
 #define QDIST_CAPACITY 6
 
-// The iteration limit is reached.
+/// The iteration limit is reached.
 #define QDIST_ITERATIONS 7
 
-// The set is flat, as far as the rounding of its points tells, and the origin lies in it; `dimension` of the result says how flat. (A set that is
-// only thin ends with QDIST_PRECISION.)
+/// The set is flat, as far as the rounding of its points tells, and the origin lies in it; `dimension` of the result says how flat. (A set that is
+/// only thin ends with QDIST_PRECISION.)
 #define QDIST_DEGENERATE 8
 
-// A callback failed; the status is QDIST_ERROR_CALLBACK.
+/// A callback failed; the status is QDIST_ERROR_CALLBACK.
 #define QDIST_SUPPORT_FAILED 9
 
-// `interrupt` of the options said so.
+/// `interrupt` of the options said so.
 #define QDIST_INTERRUPTED 10
 
-// Two half spaces overlap without end: no translation separates them. d is infinite; both bounds are DBL_MAX (float: FLT_MAX).
+/// Two half spaces overlap without end: no translation separates them. d is infinite; both bounds are DBL_MAX (float: FLT_MAX).
 #define QDIST_UNBOUNDED 11
 
-// Expansion of one polytope, best first.
+/// Expansion of one polytope, best first.
 #define QDIST_PLAN_EXPANSION 0
 
-// By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
+/// By the distance of the core from the origin: the set has a radius, and the origin is outside of its core.
 #define QDIST_PLAN_DISTANCE 1
 
-// Polytopal Q: one ray per vertex of Q, and no polytope.
+/// Polytopal Q: one ray per vertex of Q, and no polytope.
 #define QDIST_PLAN_RAYS 2
 
-// The polytope outgrew the memory: expansion cone by cone in the same memory.
+/// The polytope outgrew the memory: expansion cone by cone in the same memory.
 #define QDIST_PLAN_CONES 3
 
-// The bracket of the last call, moved: nothing was expanded.
+/// The bracket of the last call, moved: nothing was expanded.
 #define QDIST_PLAN_WARM 4
 
-// The name of a status, e.g. "null pointer". A static string, never NULL.
-const char *qdist_status_string(qdist_status status);
+/// The name of a status, e.g. "null pointer". A static string, never NULL.
+QDIST_API const char *qdist_status_string(qdist_status status);
 
-// The name of an outcome, e.g. "converged". A static string, never NULL.
-const char *qdist_outcome_string(qdist_outcome outcome);
+/// The name of an outcome, e.g. "converged". A static string, never NULL.
+QDIST_API const char *qdist_outcome_string(qdist_outcome outcome);
 
-// The name of a plan, e.g. "rays". A static string, never NULL.
-const char *qdist_plan_string(qdist_plan plan);
+/// The name of a plan, e.g. "rays". A static string, never NULL.
+QDIST_API const char *qdist_plan_string(qdist_plan plan);
 
 /* =========================================================== VERSION =========================================================== */
 
-// Major version: changes when a program must be changed.
+/// Major version: changes when a program must be changed.
 #define QDIST_VERSION_MAJOR 0
 
-// Minor version: changes when something is added (before 1.0: when a program must be changed).
+/// Minor version: changes when something is added (before 1.0: when a program must be changed).
 #define QDIST_VERSION_MINOR 1
 
-// Patch version.
+/// Patch version.
 #define QDIST_VERSION_PATCH 0
 
-// The version of the library that is linked, `(major << 16) | (minor << 8) | patch`. Compare it with QDIST_VERSION, which is
-// that of this header.
+/// The version of the library that is linked, `(major << 16) | (minor << 8) | patch`. Compare it with QDIST_VERSION, which is
+/// that of this header.
+QDIST_API
 uint32_t qdist_version(void);
+
+/* ====================================================== MEMORY AT RUN TIME ====================================================== */
+
+/// The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64 and QDIST_WORKSPACE_BYTES_F32, for languages that
+/// have no macros of C. scalar: sizeof(double) or sizeof(float), else QDIST_ERROR_SCALAR. dimension: 2 to 6.
+QDIST_API
+qdist_status qdist_workspace_query(uint32_t scalar,
+                                   uint32_t dimension,
+                                   uint32_t max_vertices,
+                                   uint32_t max_facets,
+                                   uint32_t *bytes);
 
 /* =========================================================== SYMMETRY =========================================================== */
 
-// Of a body: none that is known.
+/// Of a body: none that is known.
 #define QDIST_SYMMETRY_NONE 0
 
-// All rotations about the z axis of the body's frame leave the set unchanged.
+/// All rotations about the z axis of the body's frame leave the set unchanged.
 #define QDIST_SYMMETRY_AXIS 1
 
-// All rotations about the origin of the body's frame leave the set unchanged.
+/// All rotations about the origin of the body's frame leave the set unchanged.
 #define QDIST_SYMMETRY_FULL 2
 
-// Of a set or unit set: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
-// when it certainly does not, else 0. A search by cones leaves out what is an image of something else under a change of sign
-// that both A and Q allow.
-//
-// user: the pointer from the set or unit set.
+/// Of a set or unit set: does it not change when the coordinates named by the bits of `signs` (bit 0: the first) change sign? Returns 1
+/// when it certainly does not, else 0. A search by cones leaves out what is an image of something else under a change of sign
+/// that both A and Q allow.
+///
+/// user: the pointer from the set or unit set.
 typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
 
-// What answers for a body without end. Not for functions of your own.
+/// What answers for a body without end. Not for functions of your own.
 typedef qdist_status (*qdist_unbounded)(const void *a, const void *b, const void *options, void *result);
 
-// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
+/// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
 typedef void (*qdist_turning)(void);
 
 /* =========================================================== SOLVERS ===========================================================
@@ -345,44 +374,15 @@ typedef void (*qdist_turning)(void);
  * rare. When either is full, qdist_solve goes on cone by cone in the same memory, and qdist_depth3 ends with
  * QDIST_CAPACITY and a bracket that is still true; results say how much was used. */
 
-// The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64.
-qdist_status qdist_workspace_query_f64(uint32_t dimension, uint32_t max_vertices, uint32_t max_facets, uint32_t *bytes);
-
-// Makes a solver of dimension 2 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
-// which is that of the memory.
-qdist_status qdist_solver_init2_f64(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-// The same in dimension 3.
-qdist_status qdist_solver_init3_f64(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-// The same in dimension 4.
-qdist_status qdist_solver_init4_f64(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-// The same in dimension 5.
-qdist_status qdist_solver_init5_f64(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-// The same in dimension 6.
-qdist_status qdist_solver_init6_f64(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
+/// Makes a solver of a dimension of 2 to 6 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
+/// which is that of the memory.
+QDIST_API
+qdist_status qdist_solver_init_f64(void *memory,
+                                   uint32_t bytes,
+                                   uint32_t dimension,
+                                   uint32_t max_vertices,
+                                   uint32_t max_facets,
+                                   qdist_solver **solver);
 
 /* ========================================================= CONVEX SETS =========================================================
  *
@@ -391,84 +391,85 @@ qdist_status qdist_solver_init6_f64(void *memory,
  * the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
  * is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts. */
 
-// Writes a point of the core that is farthest along `direction` to `point`.
-//
-// user: the pointer from the set. direction: as many numbers as the dimension; finite and not all zero, but
-// not necessarily of unit length. point: room for as many.
-//
-// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
-// points are equally far, any of them.
+/// Writes a point of the core that is farthest along `direction` to `point`.
+///
+/// user: the pointer from the set. direction: as many numbers as the dimension; finite and not all zero, but
+/// not necessarily of unit length. point: room for as many.
+///
+/// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
+/// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+/// points are equally far, any of them.
 typedef int32_t (*qdist_support_f64)(void *user, const double *direction, double *point);
 
-// A convex set, core + radius * ball. Start with `= {0}`: what is zero takes its default.
+/// A convex set, core + radius * ball. Start with `= {0}`: what is zero takes its default.
 typedef struct {
-    // The support function of the core.
+    /// The support function of the core.
     qdist_support_f64 support;
-    // NULL; or, if `support` takes shortcuts and may miss the farthest point, a slower function that does not. It checks
-    // the direction that is about to be reported.
+    /// NULL; or, if `support` takes shortcuts and may miss the farthest point, a slower function that does not. It checks
+    /// the direction that is about to be reported.
     qdist_support_f64 exhaustive;
-    // NULL: not known. Which mirror images of the core are the core itself.
+    /// NULL: not known. Which mirror images of the core are the core itself.
     qdist_mirrored mirrored;
-    // First argument of all functions.
+    /// First argument of all functions.
     void *user;
-    // Radius of the ball swept over the core, >= 0.
+    /// Radius of the ball swept over the core, >= 0.
     double radius;
-    // An upper bound of |x| over the core, for the rounding margin; 0: not known, the largest norm seen is taken.
+    /// An upper bound of |x| over the core, for the rounding margin; 0: not known, the largest norm seen is taken.
     double extent;
-    // An upper bound of the rounding error of the support function, as a length: how far its points are off the core, and
-    // how much farther along a unit direction the farthest point may be. 0: 16 * dimension * roundoff * extent, which covers
-    // a few operations on coordinates of the core's size.
+    /// An upper bound of the rounding error of the support function, as a length: how far its points are off the core, and
+    /// how much farther along a unit direction the farthest point may be. 0: 16 * dimension * roundoff * extent, which covers
+    /// a few operations on coordinates of the core's size.
     double error;
-    // The dimension that the functions work in; 0: not known, and not checked.
+    /// The dimension that the functions work in; 0: not known, and not checked.
     uint32_t dimension;
-    // 1: the core contains the origin by its definition, as that of a grasp's wrenches does. Then d >= 0 is known where the origin lies on the boundary,
-    // which no support function can tell, and `lower` is 0 there instead of less by the rounding margin. 0: not known, unless `mirrored` shows
-    // it (what is its own image under a change of all signs contains the origin). What is stated must be true, or the bracket is not.
+    /// 1: the core contains the origin by its definition, as that of a grasp's wrenches does. Then d >= 0 is known where the origin lies on the boundary,
+    /// which no support function can tell, and `lower` is 0 there instead of less by the rounding margin. 0: not known, unless `mirrored` shows
+    /// it (what is its own image under a change of all signs contains the origin). What is stated must be true, or the bracket is not.
     uint32_t contains_origin;
 } qdist_set_f64;
 
-// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
-// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
-// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
+/// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
+/// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
+/// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
 typedef int32_t (*qdist_precise_f64)(void *user, const double *direction, double *point);
 
-// A set in space with a pose: x -> rotation * x + translation.
+/// A set in space with a pose: x -> rotation * x + translation.
 typedef struct {
-    // The set, in the body's frame.
+    /// The set, in the body's frame.
     qdist_set_f64 set;
-    // Row-major: rotation[3 * row + column]. A rotation to within 1e-4; used as it is given.
+    /// Row-major: rotation[3 * row + column]. A rotation to within 1e-4; used as it is given.
     double rotation[9];
-    // Position of the body's frame in the world.
+    /// Position of the body's frame in the world.
     double translation[3];
-    // For a set far from the origin of its frame: a point near it. Used when `spread` is above 0.
+    /// For a set far from the origin of its frame: a point near it. Used when `spread` is above 0.
     double center[3];
-    // The part of set.radius that is not a ball by itself but was split off a rounded shape, as the body functions of ellipsoids
-    // do; 0 to set.radius. Where `rotation` is a rotation only roughly, it does not leave this part a ball.
+    /// The part of set.radius that is not a ball by itself but was split off a rounded shape, as the body functions of ellipsoids
+    /// do; 0 to set.radius. Where `rotation` is a rotation only roughly, it does not leave this part a ball.
     double rolling_radius;
-    // An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
-    // to `center`. 0: measured from the origin.
+    /// An upper bound of the core's distance from `center`; `set.error` then says how well the support function works relative
+    /// to `center`. 0: measured from the origin.
     double spread;
-    // Upper bounds of |x|, |y| and |z| over the core, in the body's frame: a body that is long and flat along its axes, as a floor, is known better
-    // across. All zero: set.extent along every axis.
+    /// Upper bounds of |x|, |y| and |z| over the core, in the body's frame: a body that is long and flat along its axes, as a floor, is known better
+    /// across. All zero: set.extent along every axis.
     double extents[3];
-    // With `extents`: the rounding error set.error axis by axis; along a unit direction u it is the sum of |u_i| errors[i]. Zero is exact.
+    /// With `extents`: the rounding error set.error axis by axis; along a unit direction u it is the sum of |u_i| errors[i]. Zero is exact.
     double errors[3];
-    // Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
-    // about one axis a plane problem.
+    /// Exact symmetry of the set in its frame. QDIST_SYMMETRY_NONE (0) is always right; the others make two bodies that turn
+    /// about one axis a plane problem.
     uint32_t symmetry;
-    // NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
+    /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
-    // How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
-    // for your own sets.
+    /// How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
+    /// for your own sets.
     qdist_turning turning;
-    // NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
-    // shapes, points and hulls put it here. Called with set.user.
+    /// NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
+    /// shapes, points and hulls put it here. Called with set.user.
     qdist_precise_f64 precise;
 } qdist_body_f64;
 
-// Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
-// body.
+/// Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
+/// body.
+QDIST_API
 qdist_status qdist_body_set_f64(qdist_body_f64 *body,
                                 const qdist_set_f64 *set);
 
@@ -481,78 +482,60 @@ qdist_status qdist_body_set_f64(qdist_body_f64 *body,
  * the body. Sizes are not checked again: make the body anew when they change. (A size that has become NaN or
  * infinite ends the query with QDIST_CALLBACK_NONFINITE; after any other change, the answer means nothing.)
  *
- * `qdist_..._support_f64` is the support function that the body gets, that of the shape's core (without the ball
- * that body->set.radius sweeps over it: a sphere's core is its centre, an ellipsoid's a smaller ellipsoid-like set); user is the
- * shape, and the code that it returns is a qdist_status. For a shape in qdist_solve3, take body.set. */
+ * body->set.support is the support function of the shape's core (without the ball that body->set.radius sweeps over it: a sphere's core is
+ * its centre, an ellipsoid's a smaller ellipsoid-like set); its user is the shape, and the code that it returns is a qdist_status. For a shape
+ * in qdist_solve3, take body.set. */
 
-// All points within `radius` of the origin.
+/// All points within `radius` of the origin.
 typedef struct {
     double radius;
 } qdist_sphere_f64;
 
-// |x| <= half[0], |y| <= half[1], |z| <= half[2].
+/// |x| <= half[0], |y| <= half[1], |z| <= half[2].
 typedef struct {
     double half[3];
 } qdist_box_f64;
 
-// The ellipsoid with these semi axes along x, y and z.
+/// The ellipsoid with these semi axes along x, y and z.
 typedef struct {
     double semi_axes[3];
 } qdist_ellipsoid_f64;
 
-// x^2 + y^2 <= radius^2, |z| <= half_height.
+/// x^2 + y^2 <= radius^2, |z| <= half_height.
 typedef struct {
     double radius;
     double half_height;
 } qdist_cylinder_f64;
 
-// All points within `radius` of the segment from (0, 0, -half_height) to (0, 0, half_height).
+/// All points within `radius` of the segment from (0, 0, -half_height) to (0, 0, half_height).
 typedef struct {
     double radius;
     double half_height;
 } qdist_capsule_f64;
 
-// The hull of the disk of `radius` at z = -half_height and the apex (0, 0, half_height).
+/// The hull of the disk of `radius` at z = -half_height and the apex (0, 0, half_height).
 typedef struct {
     double radius;
     double half_height;
 } qdist_cone_f64;
 
-// Makes a body of a sphere.
-qdist_status qdist_body_sphere_f64(qdist_body_f64 *body, const qdist_sphere_f64 *shape);
+/// Makes a body of a sphere, in the identity pose, like all that follow.
+QDIST_API qdist_status qdist_body_sphere_f64(qdist_body_f64 *body, const qdist_sphere_f64 *shape);
 
-// Makes a body of a box.
-qdist_status qdist_body_box_f64(qdist_body_f64 *body, const qdist_box_f64 *shape);
+/// Makes a body of a box.
+QDIST_API qdist_status qdist_body_box_f64(qdist_body_f64 *body, const qdist_box_f64 *shape);
 
-// Makes a body of an ellipsoid.
-qdist_status qdist_body_ellipsoid_f64(qdist_body_f64 *body, const qdist_ellipsoid_f64 *shape);
+/// Makes a body of an ellipsoid.
+QDIST_API qdist_status qdist_body_ellipsoid_f64(qdist_body_f64 *body, const qdist_ellipsoid_f64 *shape);
 
-// Makes a body of a cylinder.
-qdist_status qdist_body_cylinder_f64(qdist_body_f64 *body, const qdist_cylinder_f64 *shape);
+/// Makes a body of a cylinder.
+QDIST_API qdist_status qdist_body_cylinder_f64(qdist_body_f64 *body, const qdist_cylinder_f64 *shape);
 
-// Makes a body of a capsule.
-qdist_status qdist_body_capsule_f64(qdist_body_f64 *body, const qdist_capsule_f64 *shape);
+/// Makes a body of a capsule.
+QDIST_API qdist_status qdist_body_capsule_f64(qdist_body_f64 *body, const qdist_capsule_f64 *shape);
 
-// Makes a body of a cone.
-qdist_status qdist_body_cone_f64(qdist_body_f64 *body, const qdist_cone_f64 *shape);
-
-// Support function of a sphere's core.
-int32_t qdist_sphere_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a box.
-int32_t qdist_box_support_f64(void *user, const double *direction, double *point);
-
-// Support function of an ellipsoid's core.
-int32_t qdist_ellipsoid_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a cylinder.
-int32_t qdist_cylinder_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a capsule's core, a segment.
-int32_t qdist_capsule_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a cone.
-int32_t qdist_cone_support_f64(void *user, const double *direction, double *point);
+/// Makes a body of a cone.
+QDIST_API qdist_status qdist_body_cone_f64(qdist_body_f64 *body, const qdist_cone_f64 *shape);
 
 /* ======================================================= HULLS OF POINTS =======================================================
  *
@@ -560,103 +543,77 @@ int32_t qdist_cone_support_f64(void *user, const double *direction, double *poin
  * climbing from vertex to vertex. The lists must outlive the set or body that is made of them, which is when their
  * coordinates are read and checked: make it anew when they change. */
 
-// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
+/// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
 typedef struct {
     const double *points;
     uint32_t count;
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_points_f64;
 
-// A convex hull in space of up to QDIST_HULL_POINTS points, and the graph of its edges. Made by qdist_hull_prepare_f64. The
-// graph is plain numbers without addresses: it may be kept in a file or in flash. Any content is safe to use, and the time of a
-// support call is bounded by the number of points.
+/// A convex hull in space of up to QDIST_HULL_POINTS points, and the graph of its edges. Made by qdist_hull_prepare_f64. The
+/// graph is plain numbers without addresses: it may be kept in a file or in flash. Any content is safe to use, and the time of a
+/// support call is bounded by the number of points.
 typedef struct {
-    // Of dimension 3.
+    /// Of dimension 3.
     qdist_points_f64 points;
     const uint16_t *graph;
-    // Length of `graph`.
+    /// Length of `graph`.
     uint32_t graph_len;
 } qdist_hull_f64;
 
-// The same of any number of points. Made by qdist_hull_large_prepare_f64.
+/// The same of any number of points. Made by qdist_hull_large_prepare_f64.
 typedef struct {
-    // Of dimension 3.
+    /// Of dimension 3.
     qdist_points_f64 points;
     const uint32_t *graph;
-    // Length of `graph`.
+    /// Length of `graph`.
     uint32_t graph_len;
 } qdist_hull_large_f64;
 
-// Makes a set of a list of points of any dimension. Reads all of them.
-qdist_status qdist_set_points_f64(qdist_set_f64 *set, const qdist_points_f64 *shape);
+/// Makes a set of a list of points of any dimension. Reads all of them.
+QDIST_API qdist_status qdist_set_points_f64(qdist_set_f64 *set, const qdist_points_f64 *shape);
 
-// Makes a body of a list of points of dimension 3. Reads all of them.
-qdist_status qdist_body_points_f64(qdist_body_f64 *body, const qdist_points_f64 *shape);
+/// Makes a body of a list of points of dimension 3. Reads all of them.
+QDIST_API qdist_status qdist_body_points_f64(qdist_body_f64 *body, const qdist_points_f64 *shape);
 
-// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
-// dimension 3, as workspace: max_facets >= 2 * count always suffices, whatever max_vertices is. QDIST_HULL_GRAPH_LEN(count) words
-// are needed. Points inside the hull are legal, and so are equal points.
-//
-// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
-// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
-// the function to call.
+/// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
+/// dimension 3, as workspace: max_facets >= 2 * count always suffices, whatever max_vertices is. QDIST_HULL_GRAPH_LEN(count) words
+/// are needed. Points inside the hull are legal, and so are equal points. With `interrupt`, which may be NULL, the status may be
+/// QDIST_ERROR_INTERRUPTED.
+///
+/// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
+/// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
+/// the function to call.
+QDIST_API
 qdist_status qdist_hull_prepare_f64(qdist_hull_f64 *hull,
+                                    qdist_solver *solver,
                                     const double *points,
                                     uint32_t count,
+                                    qdist_interrupt interrupt,
+                                    void *interrupt_user,
                                     uint16_t *graph,
-                                    uint32_t graph_capacity,
-                                    qdist_solver *solver);
+                                    uint32_t graph_capacity);
 
-// The same with a deadline: with `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
-qdist_status qdist_hull_prepare_until_f64(qdist_hull_f64 *hull,
-                                          const double *points,
-                                          uint32_t count,
-                                          uint16_t *graph,
-                                          uint32_t graph_capacity,
-                                          qdist_solver *solver,
-                                          qdist_interrupt interrupt,
-                                          void *interrupt_user);
-
-// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
-// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
-// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+/// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
+/// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
+/// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+QDIST_API
 qdist_status qdist_hull_large_prepare_f64(qdist_hull_large_f64 *hull,
-                                          const double *points,
-                                          uint32_t count,
-                                          uint32_t *graph,
-                                          uint32_t graph_capacity,
                                           uint32_t *workspace,
                                           uint32_t workspace_capacity,
+                                          const double *points,
+                                          uint32_t count,
                                           qdist_interrupt interrupt,
-                                          void *interrupt_user);
+                                          void *interrupt_user,
+                                          uint32_t *graph,
+                                          uint32_t graph_capacity);
 
-// Makes a body of a prepared hull. Reads all points.
-qdist_status qdist_body_hull_f64(qdist_body_f64 *body, const qdist_hull_f64 *shape);
+/// Makes a body of a prepared hull. Reads all points.
+QDIST_API qdist_status qdist_body_hull_f64(qdist_body_f64 *body, const qdist_hull_f64 *shape);
 
-// Makes a body of a large hull. Reads all points.
-qdist_status qdist_body_hull_large_f64(qdist_body_f64 *body, const qdist_hull_large_f64 *shape);
-
-// Support function of a list of points of any dimension.
-int32_t qdist_points_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a list of points of dimension 3.
-int32_t qdist_points3_support_f64(void *user, const double *direction, double *point);
-
-// The same, more accurate where all points are far from the origin compared with their spread.
-int32_t qdist_points3_far_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a prepared hull.
-int32_t qdist_hull_support_f64(void *user, const double *direction, double *point);
-
-// The same, more accurate where all points are far from the origin compared with their spread.
-int32_t qdist_hull_far_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a large hull.
-int32_t qdist_hull_large_support_f64(void *user, const double *direction, double *point);
-
-// The same, more accurate where all points are far from the origin compared with their spread.
-int32_t qdist_hull_large_far_support_f64(void *user, const double *direction, double *point);
+/// Makes a body of a large hull. Reads all points.
+QDIST_API qdist_status qdist_body_hull_large_f64(qdist_body_f64 *body, const qdist_hull_large_f64 *shape);
 
 /* ===================================================== HULLS OF TWO BODIES =====================================================
  *
@@ -665,21 +622,15 @@ int32_t qdist_hull_large_far_support_f64(void *user, const double *direction, do
  * smaller of the two radii stays a ball, and is exact. Joins may be joined again. Where both bodies turn about the z axis of the join's frame (identity rotations and
  * translations along z), so does the join, and two bodies on one axis are a plane problem. */
 
-// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
-// has changed must be made anew.
+/// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
+/// has changed must be made anew.
 typedef struct {
     const qdist_body_f64 *a;
     const qdist_body_f64 *b;
 } qdist_join_f64;
 
-// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
-qdist_status qdist_body_join_f64(qdist_body_f64 *body, const qdist_join_f64 *join);
-
-// Support function of the core of a hull of two bodies: without the smaller of the two radii.
-int32_t qdist_join_support_f64(void *user, const double *direction, double *point);
-
-// The same, where a part has shortcuts.
-int32_t qdist_join_exhaustive_f64(void *user, const double *direction, double *point);
+/// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+QDIST_API qdist_status qdist_body_join_f64(qdist_body_f64 *body, const qdist_join_f64 *join);
 
 /* ========================================================= HALF SPACES =========================================================
  *
@@ -692,79 +643,56 @@ int32_t qdist_join_exhaustive_f64(void *user, const double *direction, double *p
  * the depth is that between the two planes. Where a pose is turned, and rounding does not tell whether the normals are
  * opposite, upper is DBL_MAX (float: FLT_MAX), and lower holds in both cases. */
 
-// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.
+/// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.
 typedef struct {
     double normal[3];
     double offset;
 } qdist_half_space_f64;
 
-// Makes a body of a half space, in the identity pose. Numbers are read at every query.
-qdist_status qdist_body_half_space_f64(qdist_body_f64 *body, const qdist_half_space_f64 *shape);
+/// Makes a body of a half space, in the identity pose. Numbers are read at every query.
+QDIST_API qdist_status qdist_body_half_space_f64(qdist_body_f64 *body, const qdist_half_space_f64 *shape);
 
 /* ====================================================== SETS MADE OF SETS ======================================================
  *
  * Sum, difference, convex hull of the union, and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
  * set that is made of them. */
 
-// Two sets of the same dimension.
+/// Two sets of the same dimension.
 typedef struct {
     const qdist_set_f64 *a;
     const qdist_set_f64 *b;
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_pair_f64;
 
-// The image of a set under x -> matrix * x + translation.
-// The set must state its extent, or QDIST_ERROR_ARGUMENT: without, the rounding of the map cannot be bounded.
+/// The image of a set under x -> matrix * x + translation.
+/// The set must state its extent, or QDIST_ERROR_ARGUMENT: without, the rounding of the map cannot be bounded.
 typedef struct {
     const qdist_set_f64 *set;
-    // Row-major, `rows` x `columns`; any matrix.
+    /// Row-major, `rows` x `columns`; any matrix.
     const double *matrix;
-    // The first `rows` numbers count.
+    /// The first `rows` numbers count.
     double translation[6];
-    // Dimension of the image, 2 to 6.
+    /// Dimension of the image, 2 to 6.
     uint32_t rows;
-    // Dimension of the set, 2 to 6.
+    /// Dimension of the set, 2 to 6.
     uint32_t columns;
 } qdist_linear_f64;
 
-// Makes the Minkowski sum { x + y : x in a, y in b }.
-qdist_status qdist_set_sum_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
+/// Makes the Minkowski sum { x + y : x in a, y in b }.
+QDIST_API qdist_status qdist_set_sum_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
 
-// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
-qdist_status qdist_set_difference_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
+/// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
+QDIST_API qdist_status qdist_set_difference_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
 
-// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
-// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+/// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
+/// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+QDIST_API
 qdist_status qdist_set_join_f64(qdist_set_f64 *set,
                                 const qdist_pair_f64 *pair);
 
-// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
-qdist_status qdist_set_linear_f64(qdist_set_f64 *set, const qdist_linear_f64 *map);
-
-// Support function of a sum.
-int32_t qdist_sum_support_f64(void *user, const double *direction, double *point);
-
-// The same, where a part has shortcuts.
-int32_t qdist_sum_exhaustive_f64(void *user, const double *direction, double *point);
-
-// Support function of a difference.
-int32_t qdist_difference_support_f64(void *user, const double *direction, double *point);
-
-// The same, where a part has shortcuts.
-int32_t qdist_difference_exhaustive_f64(void *user, const double *direction, double *point);
-
-// Support function of a linear image.
-int32_t qdist_linear_support_f64(void *user, const double *direction, double *point);
-
-// The same, where the set has shortcuts.
-int32_t qdist_linear_exhaustive_f64(void *user, const double *direction, double *point);
-
-// Support function of a join.
-int32_t qdist_set_join_support_f64(void *user, const double *direction, double *point);
-
-// The same, where a part has shortcuts.
-int32_t qdist_set_join_exhaustive_f64(void *user, const double *direction, double *point);
+/// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
+QDIST_API qdist_status qdist_set_linear_f64(qdist_set_f64 *set, const qdist_linear_f64 *map);
 
 /* ========================================================== UNIT SETS ==========================================================
  *
@@ -772,110 +700,95 @@ int32_t qdist_set_join_exhaustive_f64(void *user, const double *direction, doubl
  * h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
  * ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them. */
 
-// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
-// the query with QDIST_CALLBACK_NONFINITE.
+/// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
+/// the query with QDIST_CALLBACK_NONFINITE.
 typedef double (*qdist_unit_value_f64)(void *user, const double *direction);
 
-// Writes a point q of Q with direction . q = h_Q(direction) to `point`: where the plane touches Q. Returns 0, or anything else where
-// that is not known.
+/// Writes a point q of Q with direction . q = h_Q(direction) to `point`: where the plane touches Q. Returns 0, or anything else where
+/// that is not known.
 typedef int32_t (*qdist_unit_point_f64)(void *user, const double *direction, double *point);
 
-// Writes point number `index` < vertex_count to `point`. Returns 0, or a code that ends the query, as that of a support function
-// does. Coordinates that are not finite end it too.
+/// Writes point number `index` < vertex_count to `point`. Returns 0, or a code that ends the query, as that of a support function
+/// does. Coordinates that are not finite end it too.
 typedef int32_t (*qdist_unit_vertex_f64)(void *user, uint32_t index, double *point);
 
-// A unit set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
-// true, or the bracket is not.
+/// A unit set. Start with `= {0}`: what is zero is not known, and only `value` or `ball_radius` must be. What is stated must be
+/// true, or the bracket is not.
 typedef struct {
     qdist_unit_value_f64 value;
-    // Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
+    /// Helps to find the minimum: in a search by cones, and in qdist_solve_warm.
     qdist_unit_point_f64 point;
-    // With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
-    // a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
+    /// With vertex_count: the points of which, and of the origin, Q is the hull. `value` must be theirs. d is then found by shooting
+    /// a ray at each (QDIST_PLAN_RAYS), unless expansion is cheaper.
     qdist_unit_vertex_f64 vertex;
-    // Which mirror images of Q are Q itself.
+    /// Which mirror images of Q are Q itself.
     qdist_mirrored mirrored;
-    // First argument of all functions.
+    /// First argument of all functions.
     void *user;
-    // An upper bound of |q| over Q, for the rounding margin; 0: found by asking along the axes.
+    /// An upper bound of |q| over Q, for the rounding margin; 0: found by asking along the axes.
     double extent;
-    // Above 0: Q is the ball of this radius around the origin, and no function is used. Balls swept over A are then exact.
+    /// Above 0: Q is the ball of this radius around the origin, and no function is used. Balls swept over A are then exact.
     double ball_radius;
-    // Radius of a ball around the origin that Q contains. Without, qdist_solve_warm knows no lower bound once A has moved.
+    /// Radius of a ball around the origin that Q contains. Without, qdist_solve_warm knows no lower bound once A has moved.
     double inner_radius;
-    // How many points `vertex` knows.
+    /// How many points `vertex` knows.
     uint32_t vertex_count;
-    // The dimension that the functions work in; 0: not checked.
+    /// The dimension that the functions work in; 0: not checked.
     uint32_t dimension;
 } qdist_unit_f64;
 
-// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
+/// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 typedef struct {
-    // The first `dimension` numbers count.
+    /// The first `dimension` numbers count.
     double semi_axes[6];
-    // Row-major, `dimension` x `dimension`; NULL: identity.
+    /// Row-major, `dimension` x `dimension`; NULL: identity.
     const double *rotation;
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_ellipsoid_unit_f64;
 
-// The box |x_i| <= half[i]; sizes >= 0, not all zero.
+/// The box |x_i| <= half[i]; sizes >= 0, not all zero.
 typedef struct {
-    // The first `dimension` numbers count.
+    /// The first `dimension` numbers count.
     double half[6];
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_box_unit_f64;
 
-// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
+/// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 typedef struct {
-    // The first `dimension` numbers count.
+    /// The first `dimension` numbers count.
     double semi_axes[6];
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_cross_unit_f64;
 
-// The segment from the origin to `end`, which is not zero: the depth is how many times `end` fits into A from the origin, as
-// for a ray.
+/// The segment from the origin to `end`, which is not zero: the depth is how many times `end` fits into A from the origin, as
+/// for a ray.
 typedef struct {
-    // The first `dimension` numbers count.
+    /// The first `dimension` numbers count.
     double end[6];
-    // 2 to 6.
+    /// 2 to 6.
     uint32_t dimension;
 } qdist_segment_unit_f64;
 
-// Makes the ball of this radius > 0 around the origin, of any dimension.
-qdist_status qdist_unit_ball_f64(qdist_unit_f64 *unit, double radius);
+/// Makes the ball of this radius > 0 around the origin, of any dimension.
+QDIST_API qdist_status qdist_unit_ball_f64(qdist_unit_f64 *unit, double radius);
 
-// Makes an ellipsoid.
-qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit, const qdist_ellipsoid_unit_f64 *shape);
+/// Makes an ellipsoid.
+QDIST_API qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit, const qdist_ellipsoid_unit_f64 *shape);
 
-// Makes a box.
-qdist_status qdist_unit_box_f64(qdist_unit_f64 *unit, const qdist_box_unit_f64 *shape);
+/// Makes a box.
+QDIST_API qdist_status qdist_unit_box_f64(qdist_unit_f64 *unit, const qdist_box_unit_f64 *shape);
 
-// Makes a cross-polytope.
-qdist_status qdist_unit_cross_f64(qdist_unit_f64 *unit, const qdist_cross_unit_f64 *shape);
+/// Makes a cross-polytope.
+QDIST_API qdist_status qdist_unit_cross_f64(qdist_unit_f64 *unit, const qdist_cross_unit_f64 *shape);
 
-// Makes a segment.
-qdist_status qdist_unit_segment_f64(qdist_unit_f64 *unit, const qdist_segment_unit_f64 *shape);
+/// Makes a segment.
+QDIST_API qdist_status qdist_unit_segment_f64(qdist_unit_f64 *unit, const qdist_segment_unit_f64 *shape);
 
-// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
-qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist_points_f64 *shape);
-
-// Support function of an ellipsoid unit set.
-double qdist_ellipsoid_unit_value_f64(void *user, const double *direction);
-
-// Support function of a box unit set.
-double qdist_box_unit_value_f64(void *user, const double *direction);
-
-// Support function of a cross-polytope unit set.
-double qdist_cross_unit_value_f64(void *user, const double *direction);
-
-// Support function of a segment unit set.
-double qdist_segment_unit_value_f64(void *user, const double *direction);
-
-// Support function of a unit set of vertices.
-double qdist_vertices_unit_value_f64(void *user, const double *direction);
+/// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
+QDIST_API qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist_points_f64 *shape);
 
 /* =========================================================== QUERIES ===========================================================
  *
@@ -900,151 +813,157 @@ double qdist_vertices_unit_value_f64(void *user, const double *direction);
  * It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
  * one-sided derivatives, each the least of those at all minimisers. */
 
-// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
-// relative must not both be 0.
+/// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
+/// relative must not both be 0.
 typedef struct {
-    // sizeof(qdist_options_f64).
+    /// sizeof(qdist_options_f64).
     uint32_t struct_size;
-    // The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
-    // (`make figures`), and 64 for each vertex of a polytopal Q.
+    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
+    /// (`make figures`), and 64 for each vertex of a polytopal Q.
     uint32_t max_iterations;
-    // NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
+    /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     qdist_interrupt interrupt;
-    // First argument of `interrupt`.
+    /// First argument of `interrupt`.
     void *interrupt_user;
-    // Stop when upper - lower <= max(absolute, relative * |d|). Both >= 0, not both 0. Default 0.
+    /// Stop when upper - lower <= max(absolute, relative * |d|). Both >= 0, not both 0. Default 0.
     double absolute;
-    // See `absolute`. Default: 1e-6 in double, 1e-4 in float.
+    /// See `absolute`. Default: 1e-6 in double, 1e-4 in float.
     double relative;
-    // With use_threshold: stop as soon as d >= threshold or d < threshold is certain.
+    /// With use_threshold: stop as soon as d >= threshold or d < threshold is certain.
     double threshold;
-    // 0 or 1.
+    /// 0 or 1.
     uint32_t use_threshold;
-    // 0 or 1.
+    /// 0 or 1.
     uint32_t use_guess;
-    // With use_guess: a direction to look in first, of any length: the normal or direction of the last result. The first
-    // numbers count, as many as the dimension.
+    /// With use_guess: a direction to look in first, of any length: the normal or direction of the last result. The first
+    /// numbers count, as many as the dimension.
     double guess[6];
 } qdist_options_f64;
 
-// The depth of two bodies.
+/// The depth of two bodies.
 typedef struct {
-    // sizeof(qdist_depth_f64); set it before the call.
+    /// sizeof(qdist_depth_f64); set it before the call.
     uint32_t struct_size;
-    // What was concluded.
+    /// What was concluded.
     qdist_outcome outcome;
-    // Bracket of the signed depth: above 0 the length of the shortest translation that separates the bodies; below 0
-    // minus their distance.
+    /// Bracket of the signed depth: above 0 the length of the shortest translation that separates the bodies; below 0
+    /// minus their distance.
     double lower;
     double upper;
-    // Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
-    // number is 0.)
+    /// Unit vector from A to B that proves `upper`: moved by upper * normal, B no longer overlaps A. (Of vectors in the plane, the third
+    /// number is 0.)
     double normal[3];
-    // Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
-    // after B has been moved, or the nearest points of separated bodies.
+    /// Witness points on A and B, in the world. Where the bracket is as narrow as asked for (elsewhere they only prove `lower`), point_a - point_b is depth * normal up to the tolerance: the points that touch
+    /// after B has been moved, or the nearest points of separated bodies.
     double point_a[3];
     double point_b[3];
-    // Affine dimension of A - B, without ball terms, as far as it was found out: 3 unless it is flat.
+    /// Affine dimension of A - B, without ball terms, as far as it was found out: 3 unless it is flat.
     uint32_t dimension;
-    // Points added.
+    /// Points added.
     uint32_t iterations;
-    // Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
-    // state its extent.
+    /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
+    /// state its extent.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
-    // QDIST_INTERRUPTED).
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
-    // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
+    /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     int32_t callback_code;
 } qdist_depth_f64;
 
-// The generalized depth of the origin in a set.
+/// The generalized depth of the origin in a set.
 typedef struct {
-    // sizeof(qdist_result_f64); set it before the call.
+    /// sizeof(qdist_result_f64); set it before the call.
     uint32_t struct_size;
-    // What was concluded.
+    /// What was concluded.
     qdist_outcome outcome;
-    // How.
+    /// How.
     qdist_plan plan;
-    // 1: the minimiser is not unique, to the tolerance; see `rival`. 0: no second one was met.
+    /// 1: the minimiser is not unique, to the tolerance; see `rival`. 0: no second one was met.
     uint32_t has_rival;
-    // Bracket of d = max { d : d * Q inside A }, in units of Q; below 0 it is minus the Euclidean distance of A from the
-    // origin, in units of the radius where Q is a ball.
+    /// Bracket of d = max { d : d * Q inside A }, in units of Q; below 0 it is minus the Euclidean distance of A from the
+    /// origin, in units of the radius where Q is a ball.
     double lower;
     double upper;
-    // Unit vector u that proves `upper`: h_A(u) / h_Q(u). The weakest direction of A. Unused numbers are 0.
+    /// Unit vector u that proves `upper`: h_A(u) / h_Q(u). The weakest direction of A. Unused numbers are 0.
     double direction[6];
-    // The point of A (its ball included) that is farthest along `direction`.
+    /// The point of A (its ball included) that is farthest along `direction`.
     double support[6];
-    // h_Q(direction).
+    /// h_Q(direction).
     double unit;
-    // With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
+    /// With has_rival: another unit vector, more than 8 degrees away, that bounds d as tightly.
     double rival[6];
-    // Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
+    /// Weights of the points, >= 0, of sum 1: for a Euclidean Q, of the point of their simplex nearest to the origin.
     double weights[7];
-    // Coordinate k of point i is points[i * (dimension of the solver) + k].
+    /// Coordinate k of point i is points[i * (dimension of the solver) + k].
     double points[42];
-    // Evidence for `lower`: so many points of A's core, in `points` and `weights`; at most dimension + 1.
+    /// Evidence for `lower`: so many points of A's core, in `points` and `weights`; at most dimension + 1.
     uint32_t point_count;
-    // Affine dimension of A's core, as far as it was found out.
+    /// Affine dimension of A's core, as far as it was found out.
     uint32_t dimension;
-    // Points added.
+    /// Points added.
     uint32_t iterations;
-    // Calls of A's support function.
+    /// Calls of A's support function.
     uint32_t support_calls;
-    // A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
-    // QDIST_INTERRUPTED).
+    /// A solver with so many vertices and facets would have done, unless the run was cut short (QDIST_CAPACITY, QDIST_ITERATIONS,
+    /// QDIST_INTERRUPTED).
     uint32_t vertices_used;
     uint32_t facets_used;
-    // With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.
+    /// With QDIST_PLAN_CONES: cones in the last completed pass, and the most halvings of an orthant, of at most 192.
     uint32_t cones;
     uint32_t splits;
-    // What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
+    /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     int32_t callback_code;
 } qdist_result_f64;
 
-// Writes the defaults.
-qdist_status qdist_options_default_f64(qdist_options_f64 *options);
+/// Writes the defaults.
+QDIST_API qdist_status qdist_options_default_f64(qdist_options_f64 *options);
 
-// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
-// one of dimension 3. Swapping A and B turns the normal and swaps the points.
+/// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
+/// one of dimension 3. Swapping A and B turns the normal and swaps the points.
+QDIST_API
 qdist_status qdist_depth3_f64(qdist_solver *solver,
                               const qdist_body_f64 *a,
                               const qdist_body_f64 *b,
                               const qdist_options_f64 *options,
                               qdist_depth_f64 *result);
 
-// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
-// NULL: the unit ball.
+/// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
+/// NULL: the unit ball.
+QDIST_API
 qdist_status qdist_solve2_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
                               const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
-// The same in dimension 3.
+/// The same in dimension 3.
+QDIST_API
 qdist_status qdist_solve3_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
                               const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
-// The same in dimension 4.
+/// The same in dimension 4.
+QDIST_API
 qdist_status qdist_solve4_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
                               const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
-// The same in dimension 5.
+/// The same in dimension 5.
+QDIST_API
 qdist_status qdist_solve5_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
                               const qdist_unit_f64 *q,
                               const qdist_options_f64 *options,
                               qdist_result_f64 *result);
 
-// The same in dimension 6.
+/// The same in dimension 6.
+QDIST_API
 qdist_status qdist_solve6_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
                               const qdist_unit_f64 *q,
@@ -1060,110 +979,88 @@ qdist_status qdist_solve6_f64(qdist_solver *solver,
  * A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
  * way: write { c, -s, s, c } for the cosine and sine that you have. */
 
-// A set in the plane with a pose: x -> rotation * x + translation.
+/// A set in the plane with a pose: x -> rotation * x + translation.
 typedef struct {
-    // The set, in the body's frame.
+    /// The set, in the body's frame.
     qdist_set_f64 set;
-    // Row-major: { c, -s, s, c } for cosine c and sine s. A rotation to within 1e-4; used as it is given.
+    /// Row-major: { c, -s, s, c } for cosine c and sine s. A rotation to within 1e-4; used as it is given.
     double rotation[4];
-    // Position of the body's frame in the world.
+    /// Position of the body's frame in the world.
     double translation[2];
-    // As in qdist_body_f64.
+    /// As in qdist_body_f64.
     double center[2];
     double rolling_radius;
     double spread;
     double extents[2];
     double errors[2];
-    // NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
+    /// NULL; what qdist_body2_half_plane puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
-    // As in qdist_body_f64.
+    /// As in qdist_body_f64.
     qdist_precise_f64 precise;
 } qdist_body2_f64;
 
-// All points within `radius` of the origin.
+/// All points within `radius` of the origin.
 typedef struct {
     double radius;
 } qdist_disc_f64;
 
-// |x| <= half[0], |y| <= half[1].
+/// |x| <= half[0], |y| <= half[1].
 typedef struct {
     double half[2];
 } qdist_box2_f64;
 
-// The ellipse with these semi axes along x and y.
+/// The ellipse with these semi axes along x and y.
 typedef struct {
     double semi_axes[2];
 } qdist_ellipse_f64;
 
-// All points within `radius` of the segment from (0, -half_height) to (0, half_height).
+/// All points within `radius` of the segment from (0, -half_height) to (0, half_height).
 typedef struct {
     double radius;
     double half_height;
 } qdist_capsule2_f64;
 
-// The convex hull of two bodies, as qdist_join_f64.
+/// The convex hull of two bodies, as qdist_join_f64.
 typedef struct {
     const qdist_body2_f64 *a;
     const qdist_body2_f64 *b;
 } qdist_join2_f64;
 
-// The points x with normal . x <= offset. The normal points out of the half plane; it need not be of unit length, but not 0.
+/// The points x with normal . x <= offset. The normal points out of the half plane; it need not be of unit length, but not 0.
 typedef struct {
     double normal[2];
     double offset;
 } qdist_half_plane_f64;
 
-// Makes a body of a disc, in the identity pose, like all that follow.
-qdist_status qdist_body2_disc_f64(qdist_body2_f64 *body, const qdist_disc_f64 *shape);
+/// Makes a body of a disc, in the identity pose, like all that follow.
+QDIST_API qdist_status qdist_body2_disc_f64(qdist_body2_f64 *body, const qdist_disc_f64 *shape);
 
-// Makes a body of a box.
-qdist_status qdist_body2_box_f64(qdist_body2_f64 *body, const qdist_box2_f64 *shape);
+/// Makes a body of a box.
+QDIST_API qdist_status qdist_body2_box_f64(qdist_body2_f64 *body, const qdist_box2_f64 *shape);
 
-// Makes a body of an ellipse.
-qdist_status qdist_body2_ellipse_f64(qdist_body2_f64 *body, const qdist_ellipse_f64 *shape);
+/// Makes a body of an ellipse.
+QDIST_API qdist_status qdist_body2_ellipse_f64(qdist_body2_f64 *body, const qdist_ellipse_f64 *shape);
 
-// Makes a body of a capsule.
-qdist_status qdist_body2_capsule_f64(qdist_body2_f64 *body, const qdist_capsule2_f64 *shape);
+/// Makes a body of a capsule.
+QDIST_API qdist_status qdist_body2_capsule_f64(qdist_body2_f64 *body, const qdist_capsule2_f64 *shape);
 
-// Makes a body of the convex hull of a list of points of dimension 2, in any order: a convex polygon. Reads all of them.
+/// Makes a body of the convex hull of a list of points of dimension 2, in any order: a convex polygon. Reads all of them.
+QDIST_API
 qdist_status qdist_body2_points_f64(qdist_body2_f64 *body,
                                     const qdist_points_f64 *shape);
 
-// Makes a body of any set of dimension 2. Checks and copies the set; what it points to must outlive the body.
-qdist_status qdist_body2_set_f64(qdist_body2_f64 *body, const qdist_set_f64 *set);
+/// Makes a body of any set of dimension 2. Checks and copies the set; what it points to must outlive the body.
+QDIST_API qdist_status qdist_body2_set_f64(qdist_body2_f64 *body, const qdist_set_f64 *set);
 
-// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
-qdist_status qdist_body2_join_f64(qdist_body2_f64 *body, const qdist_join2_f64 *join);
+/// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+QDIST_API qdist_status qdist_body2_join_f64(qdist_body2_f64 *body, const qdist_join2_f64 *join);
 
-// Makes a body of a half plane, as qdist_body_half_space in space. Numbers are read at every query.
-qdist_status qdist_body2_half_plane_f64(qdist_body2_f64 *body, const qdist_half_plane_f64 *shape);
+/// Makes a body of a half plane, as qdist_body_half_space in space. Numbers are read at every query.
+QDIST_API qdist_status qdist_body2_half_plane_f64(qdist_body2_f64 *body, const qdist_half_plane_f64 *shape);
 
-// Support function of a disc's core.
-int32_t qdist_disc_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a box.
-int32_t qdist_box2_support_f64(void *user, const double *direction, double *point);
-
-// Support function of an ellipse's core.
-int32_t qdist_ellipse_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a capsule's core, a segment.
-int32_t qdist_capsule2_support_f64(void *user, const double *direction, double *point);
-
-// Support function of a list of points of dimension 2.
-int32_t qdist_points2_support_f64(void *user, const double *direction, double *point);
-
-// The same, more accurate where all points are far from the origin compared with their spread.
-int32_t qdist_points2_far_support_f64(void *user, const double *direction, double *point);
-
-// Support function of the core of a hull of two bodies: without the smaller of the two radii.
-int32_t qdist_join2_support_f64(void *user, const double *direction, double *point);
-
-// The same, where a part has shortcuts.
-int32_t qdist_join2_exhaustive_f64(void *user, const double *direction, double *point);
-
-// Penetration depth or distance of two bodies in the plane, with witness points. A and B may be the same body. The solver is
-// one of dimension 2. Swapping A and B turns the normal and swaps the points.
+/// Penetration depth or distance of two bodies in the plane, with witness points. A and B may be the same body. The solver is
+/// one of dimension 2. Swapping A and B turns the normal and swaps the points.
+QDIST_API
 qdist_status qdist_depth2_f64(qdist_solver *solver,
                               const qdist_body2_f64 *a,
                               const qdist_body2_f64 *b,
@@ -1172,47 +1069,20 @@ qdist_status qdist_depth2_f64(qdist_solver *solver,
 
 /* ========================================================== FLAT SETS ==========================================================
  *
- * A set in a line, plane or other subspace has depth 0 in the whole space, but a depth of its own in its subspace. These functions
- * measure a flat set that contains the origin there, with the projection of Q on it; `dimension` of the result tells the
+ * A set in a line, plane or other subspace has depth 0 in the whole space, but a depth of its own in its subspace. This function
+ * measures a flat set that contains the origin there, with the projection of Q on it; `dimension` of the result tells the
  * subspace's dimension, and directions and points are those of the whole space. Any other set is answered as by
  * qdist_solve. Flat means: no wider than the rounding of A's support function. Costs dimension + 1 to 2 * dimension + 2 more support
- * calls. A program that calls one of them contains the solvers of all lower dimensions too. */
+ * calls. A program that calls this function contains the solvers of all dimensions. */
 
-// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in dimension 2. Arguments as of
-// qdist_solve2.
-qdist_status qdist_solve_in_span2_f64(qdist_solver *solver,
-                                      const qdist_set_f64 *a,
-                                      const qdist_unit_f64 *q,
-                                      const qdist_options_f64 *options,
-                                      qdist_result_f64 *result);
-
-// The same in dimension 3.
-qdist_status qdist_solve_in_span3_f64(qdist_solver *solver,
-                                      const qdist_set_f64 *a,
-                                      const qdist_unit_f64 *q,
-                                      const qdist_options_f64 *options,
-                                      qdist_result_f64 *result);
-
-// The same in dimension 4.
-qdist_status qdist_solve_in_span4_f64(qdist_solver *solver,
-                                      const qdist_set_f64 *a,
-                                      const qdist_unit_f64 *q,
-                                      const qdist_options_f64 *options,
-                                      qdist_result_f64 *result);
-
-// The same in dimension 5.
-qdist_status qdist_solve_in_span5_f64(qdist_solver *solver,
-                                      const qdist_set_f64 *a,
-                                      const qdist_unit_f64 *q,
-                                      const qdist_options_f64 *options,
-                                      qdist_result_f64 *result);
-
-// The same in dimension 6.
-qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
-                                      const qdist_set_f64 *a,
-                                      const qdist_unit_f64 *q,
-                                      const qdist_options_f64 *options,
-                                      qdist_result_f64 *result);
+/// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in the dimension of the solver. Arguments as of
+/// qdist_solve2 to qdist_solve6.
+QDIST_API
+qdist_status qdist_solve_in_span_f64(qdist_solver *solver,
+                                     const qdist_set_f64 *a,
+                                     const qdist_unit_f64 *q,
+                                     const qdist_options_f64 *options,
+                                     qdist_result_f64 *result);
 
 /* ========================================================== WARM START ==========================================================
  *
@@ -1229,33 +1099,35 @@ qdist_status qdist_solve_in_span6_f64(qdist_solver *solver,
  *       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
  *   } */
 
-// What a loop remembers: plain data without addresses, for one set, one unit set and one dimension. Made by
-// qdist_tracker_init_f64.
+/// What a loop remembers: plain data without addresses, for one set, one unit set and one dimension. Made by
+/// qdist_tracker_init_f64.
 typedef struct {
-    // sizeof(qdist_tracker_f64).
+    /// sizeof(qdist_tracker_f64).
     uint32_t struct_size;
     uint32_t dimension;
-    // d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.
+    /// d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.
     double lower;
-    // Unit vectors, the last minimiser first; unused ones are 0.
+    /// Unit vectors, the last minimiser first; unused ones are 0.
     double directions[4][6];
 } qdist_tracker_f64;
 
-// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
-qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimension);
+/// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
+QDIST_API qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimension);
 
-// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
-// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+/// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
+/// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+QDIST_API
 qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
                                            const qdist_unit_f64 *q,
                                            double moved,
                                            double *lower);
 
-// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, for the next tick of a loop, and
-// takes note of it in the tracker. Arguments as of qdist_solve2; besides:
-//
-// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
-// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+/// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, for the next tick of a loop, and
+/// takes note of it in the tracker. Arguments as of qdist_solve2; besides:
+///
+/// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
+/// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+QDIST_API
 qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
@@ -1264,7 +1136,8 @@ qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
 
-// The same in dimension 3.
+/// The same in dimension 3.
+QDIST_API
 qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
@@ -1273,7 +1146,8 @@ qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
 
-// The same in dimension 4.
+/// The same in dimension 4.
+QDIST_API
 qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
@@ -1282,7 +1156,8 @@ qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
 
-// The same in dimension 5.
+/// The same in dimension 5.
+QDIST_API
 qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
@@ -1291,7 +1166,8 @@ qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
                                    const qdist_options_f64 *options,
                                    qdist_result_f64 *result);
 
-// The same in dimension 6.
+/// The same in dimension 6.
+QDIST_API
 qdist_status qdist_solve_warm6_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
                                    const qdist_set_f64 *a,
@@ -1302,37 +1178,13 @@ qdist_status qdist_solve_warm6_f64(qdist_solver *solver,
 
 /* ======================================================== SOLVERS, FLOAT ======================================================== */
 
-qdist_status qdist_workspace_query_f32(uint32_t dimension, uint32_t max_vertices, uint32_t max_facets, uint32_t *bytes);
-
-qdist_status qdist_solver_init2_f32(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-qdist_status qdist_solver_init3_f32(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-qdist_status qdist_solver_init4_f32(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-qdist_status qdist_solver_init5_f32(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
-
-qdist_status qdist_solver_init6_f32(void *memory,
-                                    uint32_t bytes,
-                                    uint32_t max_vertices,
-                                    uint32_t max_facets,
-                                    qdist_solver **solver);
+QDIST_API
+qdist_status qdist_solver_init_f32(void *memory,
+                                   uint32_t bytes,
+                                   uint32_t dimension,
+                                   uint32_t max_vertices,
+                                   uint32_t max_facets,
+                                   qdist_solver **solver);
 
 /* ====================================================== CONVEX SETS, FLOAT ====================================================== */
 
@@ -1367,7 +1219,7 @@ typedef struct {
     qdist_precise_f32 precise;
 } qdist_body_f32;
 
-qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);
+QDIST_API qdist_status qdist_body_set_f32(qdist_body_f32 *body, const qdist_set_f32 *set);
 
 /* ==================================================== SHAPES IN SPACE, FLOAT ==================================================== */
 
@@ -1398,29 +1250,17 @@ typedef struct {
     float half_height;
 } qdist_cone_f32;
 
-qdist_status qdist_body_sphere_f32(qdist_body_f32 *body, const qdist_sphere_f32 *shape);
+QDIST_API qdist_status qdist_body_sphere_f32(qdist_body_f32 *body, const qdist_sphere_f32 *shape);
 
-qdist_status qdist_body_box_f32(qdist_body_f32 *body, const qdist_box_f32 *shape);
+QDIST_API qdist_status qdist_body_box_f32(qdist_body_f32 *body, const qdist_box_f32 *shape);
 
-qdist_status qdist_body_ellipsoid_f32(qdist_body_f32 *body, const qdist_ellipsoid_f32 *shape);
+QDIST_API qdist_status qdist_body_ellipsoid_f32(qdist_body_f32 *body, const qdist_ellipsoid_f32 *shape);
 
-qdist_status qdist_body_cylinder_f32(qdist_body_f32 *body, const qdist_cylinder_f32 *shape);
+QDIST_API qdist_status qdist_body_cylinder_f32(qdist_body_f32 *body, const qdist_cylinder_f32 *shape);
 
-qdist_status qdist_body_capsule_f32(qdist_body_f32 *body, const qdist_capsule_f32 *shape);
+QDIST_API qdist_status qdist_body_capsule_f32(qdist_body_f32 *body, const qdist_capsule_f32 *shape);
 
-qdist_status qdist_body_cone_f32(qdist_body_f32 *body, const qdist_cone_f32 *shape);
-
-int32_t qdist_sphere_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_box_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_ellipsoid_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_cylinder_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_capsule_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_cone_support_f32(void *user, const float *direction, float *point);
+QDIST_API qdist_status qdist_body_cone_f32(qdist_body_f32 *body, const qdist_cone_f32 *shape);
 
 /* ==================================================== HULLS OF POINTS, FLOAT ==================================================== */
 
@@ -1442,53 +1282,34 @@ typedef struct {
     uint32_t graph_len;
 } qdist_hull_large_f32;
 
-qdist_status qdist_set_points_f32(qdist_set_f32 *set, const qdist_points_f32 *shape);
+QDIST_API qdist_status qdist_set_points_f32(qdist_set_f32 *set, const qdist_points_f32 *shape);
 
-qdist_status qdist_body_points_f32(qdist_body_f32 *body, const qdist_points_f32 *shape);
+QDIST_API qdist_status qdist_body_points_f32(qdist_body_f32 *body, const qdist_points_f32 *shape);
 
+QDIST_API
 qdist_status qdist_hull_prepare_f32(qdist_hull_f32 *hull,
+                                    qdist_solver *solver,
                                     const float *points,
                                     uint32_t count,
+                                    qdist_interrupt interrupt,
+                                    void *interrupt_user,
                                     uint16_t *graph,
-                                    uint32_t graph_capacity,
-                                    qdist_solver *solver);
+                                    uint32_t graph_capacity);
 
-qdist_status qdist_hull_prepare_until_f32(qdist_hull_f32 *hull,
-                                          const float *points,
-                                          uint32_t count,
-                                          uint16_t *graph,
-                                          uint32_t graph_capacity,
-                                          qdist_solver *solver,
-                                          qdist_interrupt interrupt,
-                                          void *interrupt_user);
-
+QDIST_API
 qdist_status qdist_hull_large_prepare_f32(qdist_hull_large_f32 *hull,
-                                          const float *points,
-                                          uint32_t count,
-                                          uint32_t *graph,
-                                          uint32_t graph_capacity,
                                           uint32_t *workspace,
                                           uint32_t workspace_capacity,
+                                          const float *points,
+                                          uint32_t count,
                                           qdist_interrupt interrupt,
-                                          void *interrupt_user);
+                                          void *interrupt_user,
+                                          uint32_t *graph,
+                                          uint32_t graph_capacity);
 
-qdist_status qdist_body_hull_f32(qdist_body_f32 *body, const qdist_hull_f32 *shape);
+QDIST_API qdist_status qdist_body_hull_f32(qdist_body_f32 *body, const qdist_hull_f32 *shape);
 
-qdist_status qdist_body_hull_large_f32(qdist_body_f32 *body, const qdist_hull_large_f32 *shape);
-
-int32_t qdist_points_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_points3_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_points3_far_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_hull_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_hull_far_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_hull_large_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_hull_large_far_support_f32(void *user, const float *direction, float *point);
+QDIST_API qdist_status qdist_body_hull_large_f32(qdist_body_f32 *body, const qdist_hull_large_f32 *shape);
 
 /* ================================================== HULLS OF TWO BODIES, FLOAT ================================================== */
 
@@ -1497,11 +1318,7 @@ typedef struct {
     const qdist_body_f32 *b;
 } qdist_join_f32;
 
-qdist_status qdist_body_join_f32(qdist_body_f32 *body, const qdist_join_f32 *join);
-
-int32_t qdist_join_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_join_exhaustive_f32(void *user, const float *direction, float *point);
+QDIST_API qdist_status qdist_body_join_f32(qdist_body_f32 *body, const qdist_join_f32 *join);
 
 /* ====================================================== HALF SPACES, FLOAT ====================================================== */
 
@@ -1510,7 +1327,7 @@ typedef struct {
     float offset;
 } qdist_half_space_f32;
 
-qdist_status qdist_body_half_space_f32(qdist_body_f32 *body, const qdist_half_space_f32 *shape);
+QDIST_API qdist_status qdist_body_half_space_f32(qdist_body_f32 *body, const qdist_half_space_f32 *shape);
 
 /* =================================================== SETS MADE OF SETS, FLOAT =================================================== */
 
@@ -1528,29 +1345,13 @@ typedef struct {
     uint32_t columns;
 } qdist_linear_f32;
 
-qdist_status qdist_set_sum_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
+QDIST_API qdist_status qdist_set_sum_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
 
-qdist_status qdist_set_difference_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
+QDIST_API qdist_status qdist_set_difference_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
 
-qdist_status qdist_set_join_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
+QDIST_API qdist_status qdist_set_join_f32(qdist_set_f32 *set, const qdist_pair_f32 *pair);
 
-qdist_status qdist_set_linear_f32(qdist_set_f32 *set, const qdist_linear_f32 *map);
-
-int32_t qdist_sum_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_sum_exhaustive_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_difference_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_difference_exhaustive_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_linear_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_linear_exhaustive_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_set_join_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_set_join_exhaustive_f32(void *user, const float *direction, float *point);
+QDIST_API qdist_status qdist_set_linear_f32(qdist_set_f32 *set, const qdist_linear_f32 *map);
 
 /* ======================================================= UNIT SETS, FLOAT ======================================================= */
 
@@ -1594,27 +1395,17 @@ typedef struct {
     uint32_t dimension;
 } qdist_segment_unit_f32;
 
-qdist_status qdist_unit_ball_f32(qdist_unit_f32 *unit, float radius);
+QDIST_API qdist_status qdist_unit_ball_f32(qdist_unit_f32 *unit, float radius);
 
-qdist_status qdist_unit_ellipsoid_f32(qdist_unit_f32 *unit, const qdist_ellipsoid_unit_f32 *shape);
+QDIST_API qdist_status qdist_unit_ellipsoid_f32(qdist_unit_f32 *unit, const qdist_ellipsoid_unit_f32 *shape);
 
-qdist_status qdist_unit_box_f32(qdist_unit_f32 *unit, const qdist_box_unit_f32 *shape);
+QDIST_API qdist_status qdist_unit_box_f32(qdist_unit_f32 *unit, const qdist_box_unit_f32 *shape);
 
-qdist_status qdist_unit_cross_f32(qdist_unit_f32 *unit, const qdist_cross_unit_f32 *shape);
+QDIST_API qdist_status qdist_unit_cross_f32(qdist_unit_f32 *unit, const qdist_cross_unit_f32 *shape);
 
-qdist_status qdist_unit_segment_f32(qdist_unit_f32 *unit, const qdist_segment_unit_f32 *shape);
+QDIST_API qdist_status qdist_unit_segment_f32(qdist_unit_f32 *unit, const qdist_segment_unit_f32 *shape);
 
-qdist_status qdist_unit_vertices_f32(qdist_unit_f32 *unit, const qdist_points_f32 *shape);
-
-float qdist_ellipsoid_unit_value_f32(void *user, const float *direction);
-
-float qdist_box_unit_value_f32(void *user, const float *direction);
-
-float qdist_cross_unit_value_f32(void *user, const float *direction);
-
-float qdist_segment_unit_value_f32(void *user, const float *direction);
-
-float qdist_vertices_unit_value_f32(void *user, const float *direction);
+QDIST_API qdist_status qdist_unit_vertices_f32(qdist_unit_f32 *unit, const qdist_points_f32 *shape);
 
 /* ======================================================== QUERIES, FLOAT ======================================================== */
 
@@ -1671,38 +1462,44 @@ typedef struct {
     int32_t callback_code;
 } qdist_result_f32;
 
-qdist_status qdist_options_default_f32(qdist_options_f32 *options);
+QDIST_API qdist_status qdist_options_default_f32(qdist_options_f32 *options);
 
+QDIST_API
 qdist_status qdist_depth3_f32(qdist_solver *solver,
                               const qdist_body_f32 *a,
                               const qdist_body_f32 *b,
                               const qdist_options_f32 *options,
                               qdist_depth_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve2_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
                               const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve3_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
                               const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve4_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
                               const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve5_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
                               const qdist_unit_f32 *q,
                               const qdist_options_f32 *options,
                               qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve6_f32(qdist_solver *solver,
                               const qdist_set_f32 *a,
                               const qdist_unit_f32 *q,
@@ -1751,38 +1548,23 @@ typedef struct {
     float offset;
 } qdist_half_plane_f32;
 
-qdist_status qdist_body2_disc_f32(qdist_body2_f32 *body, const qdist_disc_f32 *shape);
+QDIST_API qdist_status qdist_body2_disc_f32(qdist_body2_f32 *body, const qdist_disc_f32 *shape);
 
-qdist_status qdist_body2_box_f32(qdist_body2_f32 *body, const qdist_box2_f32 *shape);
+QDIST_API qdist_status qdist_body2_box_f32(qdist_body2_f32 *body, const qdist_box2_f32 *shape);
 
-qdist_status qdist_body2_ellipse_f32(qdist_body2_f32 *body, const qdist_ellipse_f32 *shape);
+QDIST_API qdist_status qdist_body2_ellipse_f32(qdist_body2_f32 *body, const qdist_ellipse_f32 *shape);
 
-qdist_status qdist_body2_capsule_f32(qdist_body2_f32 *body, const qdist_capsule2_f32 *shape);
+QDIST_API qdist_status qdist_body2_capsule_f32(qdist_body2_f32 *body, const qdist_capsule2_f32 *shape);
 
-qdist_status qdist_body2_points_f32(qdist_body2_f32 *body, const qdist_points_f32 *shape);
+QDIST_API qdist_status qdist_body2_points_f32(qdist_body2_f32 *body, const qdist_points_f32 *shape);
 
-qdist_status qdist_body2_set_f32(qdist_body2_f32 *body, const qdist_set_f32 *set);
+QDIST_API qdist_status qdist_body2_set_f32(qdist_body2_f32 *body, const qdist_set_f32 *set);
 
-qdist_status qdist_body2_join_f32(qdist_body2_f32 *body, const qdist_join2_f32 *join);
+QDIST_API qdist_status qdist_body2_join_f32(qdist_body2_f32 *body, const qdist_join2_f32 *join);
 
-qdist_status qdist_body2_half_plane_f32(qdist_body2_f32 *body, const qdist_half_plane_f32 *shape);
+QDIST_API qdist_status qdist_body2_half_plane_f32(qdist_body2_f32 *body, const qdist_half_plane_f32 *shape);
 
-int32_t qdist_disc_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_box2_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_ellipse_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_capsule2_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_points2_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_points2_far_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_join2_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_join2_exhaustive_f32(void *user, const float *direction, float *point);
-
+QDIST_API
 qdist_status qdist_depth2_f32(qdist_solver *solver,
                               const qdist_body2_f32 *a,
                               const qdist_body2_f32 *b,
@@ -1791,35 +1573,12 @@ qdist_status qdist_depth2_f32(qdist_solver *solver,
 
 /* ======================================================= FLAT SETS, FLOAT ======================================================= */
 
-qdist_status qdist_solve_in_span2_f32(qdist_solver *solver,
-                                      const qdist_set_f32 *a,
-                                      const qdist_unit_f32 *q,
-                                      const qdist_options_f32 *options,
-                                      qdist_result_f32 *result);
-
-qdist_status qdist_solve_in_span3_f32(qdist_solver *solver,
-                                      const qdist_set_f32 *a,
-                                      const qdist_unit_f32 *q,
-                                      const qdist_options_f32 *options,
-                                      qdist_result_f32 *result);
-
-qdist_status qdist_solve_in_span4_f32(qdist_solver *solver,
-                                      const qdist_set_f32 *a,
-                                      const qdist_unit_f32 *q,
-                                      const qdist_options_f32 *options,
-                                      qdist_result_f32 *result);
-
-qdist_status qdist_solve_in_span5_f32(qdist_solver *solver,
-                                      const qdist_set_f32 *a,
-                                      const qdist_unit_f32 *q,
-                                      const qdist_options_f32 *options,
-                                      qdist_result_f32 *result);
-
-qdist_status qdist_solve_in_span6_f32(qdist_solver *solver,
-                                      const qdist_set_f32 *a,
-                                      const qdist_unit_f32 *q,
-                                      const qdist_options_f32 *options,
-                                      qdist_result_f32 *result);
+QDIST_API
+qdist_status qdist_solve_in_span_f32(qdist_solver *solver,
+                                     const qdist_set_f32 *a,
+                                     const qdist_unit_f32 *q,
+                                     const qdist_options_f32 *options,
+                                     qdist_result_f32 *result);
 
 /* ====================================================== WARM START, FLOAT ====================================================== */
 
@@ -1830,13 +1589,15 @@ typedef struct {
     float directions[4][6];
 } qdist_tracker_f32;
 
-qdist_status qdist_tracker_init_f32(qdist_tracker_f32 *tracker, uint32_t dimension);
+QDIST_API qdist_status qdist_tracker_init_f32(qdist_tracker_f32 *tracker, uint32_t dimension);
 
+QDIST_API
 qdist_status qdist_tracker_lower_after_f32(const qdist_tracker_f32 *tracker,
                                            const qdist_unit_f32 *q,
                                            float moved,
                                            float *lower);
 
+QDIST_API
 qdist_status qdist_solve_warm2_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
@@ -1845,6 +1606,7 @@ qdist_status qdist_solve_warm2_f32(qdist_solver *solver,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve_warm3_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
@@ -1853,6 +1615,7 @@ qdist_status qdist_solve_warm3_f32(qdist_solver *solver,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve_warm4_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
@@ -1861,6 +1624,7 @@ qdist_status qdist_solve_warm4_f32(qdist_solver *solver,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve_warm5_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,
@@ -1869,6 +1633,7 @@ qdist_status qdist_solve_warm5_f32(qdist_solver *solver,
                                    const qdist_options_f32 *options,
                                    qdist_result_f32 *result);
 
+QDIST_API
 qdist_status qdist_solve_warm6_f32(qdist_solver *solver,
                                    qdist_tracker_f32 *tracker,
                                    const qdist_set_f32 *a,

@@ -34,7 +34,7 @@ class Solver {
 public:
     Solver() noexcept {
         qdist_solver *solver = nullptr;
-        Api<T>::template init<N>(memory_, uint32_t{sizeof memory_}, MaxVertices, MaxFacets, &solver);
+        Api<T>::init(memory_, uint32_t{sizeof memory_}, N, MaxVertices, MaxFacets, &solver);
     }
     // The handle for the C interface; it is the memory's address, whatever copy this is.
     qdist_solver *get() noexcept { return reinterpret_cast<qdist_solver *>(memory_); }
@@ -56,13 +56,9 @@ private:
         static constexpr uint32_t bytes(uint32_t n, uint32_t vertices, uint32_t facets) noexcept {                         \
             return QDIST_WORKSPACE_BYTES_##SUFFIX(n, vertices, facets);                                                    \
         }                                                                                                                  \
-        template <uint32_t N, class... Args>                                                                               \
+        template <class... Args>                                                                                           \
         static qdist_status init(Args... args) noexcept {                                                                  \
-            if constexpr (N == 2) return qdist_solver_init2_##suffix(args...);                                             \
-            else if constexpr (N == 3) return qdist_solver_init3_##suffix(args...);                                        \
-            else if constexpr (N == 4) return qdist_solver_init4_##suffix(args...);                                        \
-            else if constexpr (N == 5) return qdist_solver_init5_##suffix(args...);                                        \
-            else return qdist_solver_init6_##suffix(args...);                                                              \
+            return qdist_solver_init_##suffix(args...);                                                                    \
         }                                                                                                                  \
         template <uint32_t N, class... Args>                                                                               \
         static qdist_status solve(Args... args) noexcept {                                                                 \

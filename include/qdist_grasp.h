@@ -11,9 +11,9 @@
  *     uint32_t which;
  *
  *     for (int i = 0; i < 2; i++) contacts[i].friction = QDIST_SOFT, contacts[i].mu = 0.5, contacts[i].mus = 0.01;
- *     qdist_passive_primitives_f64(contacts, 2, &frame, primitives, &which);
+ *     qdist_primitives_f64(contacts, 2, &frame, 0, 0, primitives, &which);
  *     qdist_set_wrenches_f64(&set, &wrenches);
- *     qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver);
+ *     qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver);
  *     result.struct_size = sizeof result;
  *     qdist_solve6_f64(solver, &set, NULL, NULL, &result);
  *     ... result.lower <= d <= result.upper; result.direction is the grasp's weakest ...
@@ -37,122 +37,122 @@ extern "C" {
  *
  * Small numbers with names, for both scalars. */
 
-// callback_code of a set of fingers when no point was found that is provably as good as the set's `error` says. Known of numbers far from any
-// hand only, such as friction coefficients of 1e9.
+/// callback_code of a set of fingers when no point was found that is provably as good as the set's `error` says. Known of numbers far from any
+/// hand only, such as friction coefficients of 1e9.
 #define QDIST_CALLBACK_UNSOLVED (-2147483647 + 1)
 
-// What did a search for contact forces conclude?
+/// What did a search for contact forces conclude?
 typedef int32_t qdist_force_outcome;
 
-// The friction of a contact.
+/// The friction of a contact.
 typedef uint32_t qdist_friction;
 
-// The size of all contact forces together.
+/// The size of all contact forces together.
 typedef uint32_t qdist_norm;
 
-// Who makes the contact forces of a finger?
+/// Who makes the contact forces of a finger?
 typedef uint32_t qdist_force_model;
 
-// Where the edges of a friction pyramid are.
+/// Where the edges of a friction pyramid are.
 typedef uint32_t qdist_layout;
 
-// A tool with linearised cones.
+/// A tool with linearised cones.
 typedef uint32_t qdist_tool;
 
-// Is a grasp force-closed?
+/// Is a grasp force-closed?
 typedef int32_t qdist_closure;
 
-// Why has d no gradient?
+/// Why has d no gradient?
 typedef int32_t qdist_kink;
 
-// A normal force only. mu and mus are not read.
+/// A normal force only. mu and mus are not read.
 #define QDIST_FRICTIONLESS 0
 
-// A point with Coulomb friction: sqrt(f2^2 + f3^2) <= mu f1, f4 = 0. mus is not read.
+/// A point with Coulomb friction: sqrt(f2^2 + f3^2) <= mu f1, f4 = 0. mus is not read.
 #define QDIST_HARD 1
 
-// A soft finger: sqrt((f2^2 + f3^2) / mu^2 + f4^2 / mus^2) <= f1.
+/// A soft finger: sqrt((f2^2 + f3^2) / mu^2 + f4^2 / mus^2) <= f1.
 #define QDIST_SOFT 2
 
-// The sum of the normal forces, each divided by its cap, is at most 1: the contacts share one supply.
+/// The sum of the normal forces, each divided by its cap, is at most 1: the contacts share one supply.
 #define QDIST_L1 0
 
-// Each normal force is at most its cap: every contact has a supply of its own.
+/// Each normal force is at most its cap: every contact has a supply of its own.
 #define QDIST_LINF 1
 
-// Anyone: the structure bears what the joints do not. Limits hold for the torques that reach the joints.
+/// Anyone: the structure bears what the joints do not. Limits hold for the torques that reach the joints.
 #define QDIST_FORCE_MODEL_PASSIVE 0
 
-// The joints, at all contacts of the finger together. A finger without joints is passive.
+/// The joints, at all contacts of the finger together. A finger without joints is passive.
 #define QDIST_FORCE_MODEL_ACTIVE 1
 
-// `sides` of them on the edge of the cone, the first along o; a soft contact has two more, which only spin.
+/// `sides` of them on the edge of the cone, the first along o; a soft contact has two more, which only spin.
 #define QDIST_LAYOUT_INSCRIBED 0
 
-// The same, so much longer that the pyramid contains the cone.
+/// The same, so much longer that the pyramid contains the cone.
 #define QDIST_LAYOUT_CIRCUMSCRIBED 1
 
-// GraspIt!: 8; for a soft contact 20.
+/// GraspIt!: 8; for a soft contact 20.
 #define QDIST_LAYOUT_GRASPIT 2
 
-// Dex-Net: `sides`; for a soft contact two moments more, without a normal force. mus does not count.
+/// Dex-Net: `sides`; for a soft contact two moments more, without a normal force. mus does not count.
 #define QDIST_LAYOUT_DEX_NET 3
 
-// o is n x e_x, or n x e_z where n is along e_x.
+/// o is n x e_x, or n x e_z where n is along e_x.
 #define QDIST_TOOL_GRASPIT 0
 
-// o is the projection of e_x.
+/// o is the projection of e_x.
 #define QDIST_TOOL_DEX_NET 1
 
-// o is the projection of (1.2, 2.3, 3.4); edges have unit length.
+/// o is the projection of (1.2, 2.3, 3.4); edges have unit length.
 #define QDIST_TOOL_FROGGER 2
 
-// No: along `direction` the set does not reach beyond half of its own rounding, some 20 to 60 roundoffs of the wrenches that the height is made of. d
-// cannot be told from 0.
+/// No: along `direction` the set does not reach beyond half of its own rounding, some 20 to 60 roundoffs of the wrenches that the height is made of. d
+/// cannot be told from 0.
 #define QDIST_CLOSURE_OPEN 0
 
-// Yes, for certain: the wrench set contains a ball of `radius` > 0 around the origin.
+/// Yes, for certain: the wrench set contains a ball of `radius` > 0 around the origin.
 #define QDIST_CLOSURE_CLOSED 1
 
-// Neither is proved: d is above 0 by little more than rounding, if it is; or memory, iterations or `interrupt` ended the query.
+/// Neither is proved: d is above 0 by little more than rounding, if it is; or memory, iterations or `interrupt` ended the query.
 #define QDIST_CLOSURE_UNDECIDED 2
 
-// It has one.
+/// It has one.
 #define QDIST_KINK_NONE 0
 
-// Another direction bounds d as tightly: the minimiser is not unique.
+/// Another direction bounds d as tightly: the minimiser is not unique.
 #define QDIST_KINK_RIVAL 1
 
-// Two or more points of Q touch the boundary of the wrench set.
+/// Two or more points of Q touch the boundary of the wrench set.
 #define QDIST_KINK_UNIT 2
 
-// No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
-// way, d is constant along a curve, or the result was too far from a minimum.
+/// No regular minimum was found near the result's direction: a contact is just about to carry load, contacts share it in more than one
+/// way, d is constant along a curve, or the result was too far from a minimum.
 #define QDIST_KINK_DEGENERATE 3
 
-// d is not known to be above 0.
+/// d is not known to be above 0.
 #define QDIST_KINK_NOT_CLOSED 4
 
-// The bracket is as narrow as asked for, and so is the equilibrium.
+/// The bracket is as narrow as asked for, and so is the equilibrium.
 #define QDIST_FORCES_CONVERGED 0
 
-// Stopped early: the least size is above the limit.
+/// Stopped early: the least size is above the limit.
 #define QDIST_FORCES_ABOVE 1
 
-// No contact forces resist the wrench, up to rounding: `direction` separates.
+/// No contact forces resist the wrench, up to rounding: `direction` separates.
 #define QDIST_FORCES_NOT_RESISTIBLE 2
 
-// Arithmetic does not allow a narrower bracket, or a better equilibrium. So ends a wrench on the very boundary of what can be resisted.
+/// Arithmetic does not allow a narrower bracket, or a better equilibrium. So ends a wrench on the very boundary of what can be resisted.
 #define QDIST_FORCES_PRECISION 3
 
-// The iteration limit is reached.
+/// The iteration limit is reached.
 #define QDIST_FORCES_ITERATIONS 4
 
-// A primitive is no number; the status is QDIST_ERROR_CALLBACK.
+/// A primitive is no number; the status is QDIST_ERROR_CALLBACK.
 #define QDIST_FORCES_FAILED 5
 
-// The name of an outcome, e.g. "not resistible". A static string, never NULL.
-const char *qdist_force_outcome_string(qdist_force_outcome outcome);
+/// The name of an outcome, e.g. "not resistible". A static string, never NULL.
+QDIST_API const char *qdist_force_outcome_string(qdist_force_outcome outcome);
 
 /* ===================================================== CONTACTS AND FINGERS =====================================================
  *
@@ -160,93 +160,90 @@ const char *qdist_force_outcome_string(qdist_force_outcome outcome);
  * primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
  * Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all. */
 
-// A contact, in one frame of your choice. Start with `= {0}`: what is zero takes its default.
+/// A contact, in one frame of your choice. Start with `= {0}`: what is zero takes its default.
 typedef struct {
-    // Where it touches: a length.
+    /// Where it touches: a length.
     double position[3];
-    // The unit normal n, into the object.
+    /// The unit normal n, into the object.
     double normal[3];
-    // The unit tangents, o and then t, with n = o x t. All zero: derived from n. They matter only to a Jacobian and to contact forces.
+    /// The unit tangents, o and then t, with n = o x t. All zero: derived from n. They matter only to a Jacobian and to contact forces.
     double tangents[6];
-    // Tangential force per normal force.
+    /// Tangential force per normal force.
     double mu;
-    // Spin moment per normal force: a length.
+    /// Spin moment per normal force: a length.
     double mus;
-    // The largest normal force; 0: 1. (A contact that is not there has no place in the list.)
+    /// The largest normal force; 0: 1. (A contact that is not there has no place in the list.)
     double force_cap;
-    // QDIST_FRICTIONLESS, QDIST_HARD or QDIST_SOFT.
+    /// QDIST_FRICTIONLESS, QDIST_HARD or QDIST_SOFT.
     qdist_friction friction;
-    // 1: a contact of a finger, with a Jacobian; 0: of the palm.
+    /// 1: a contact of a finger, with a Jacobian; 0: of the palm.
     uint32_t actuated;
-    // Joints of the finger, 0 to 8.
+    /// Joints of the finger, 0 to 8.
     uint32_t joints;
-    // jacobian[8 * row + joint]: what a unit of joint velocity does to the finger at the contact: its velocity along n, o and t, and its
-    // angular velocity about n. Joint torques are J^T f. Locked joints have no column; joints that one actuator drives together share one.
+    /// jacobian[8 * row + joint]: what a unit of joint velocity does to the finger at the contact: its velocity along n, o and t, and its
+    /// angular velocity about n. Joint torques are J^T f. Locked joints have no column; joints that one actuator drives together share one.
     double jacobian[32];
 } qdist_contact_f64;
 
-// Wrenches are (force, moment about `reference` / `torque_scale`).
+/// Wrenches are (force, moment about `reference` / `torque_scale`).
 typedef struct {
-    // Usually the centre of mass.
+    /// Usually the centre of mass.
     double reference[3];
-    // A length > 0, usually the object's radius about the reference: what makes moments comparable to forces. 1: moments as they are.
+    /// A length > 0, usually the object's radius about the reference: what makes moments comparable to forces. 1: moments as they are.
     double torque_scale;
 } qdist_wrench_frame_f64;
 
-// The wrenches of one contact at full normal force, { center + disc x : |x| <= 1 }. Plain numbers; made by the functions below.
+/// The wrenches of one contact at full normal force, { center + disc x : |x| <= 1 }. Plain numbers; made by the functions below.
 typedef struct {
-    // Of a contact without friction the only wrench.
+    /// Of a contact without friction the only wrench.
     double center[6];
-    // disc[6 * column + row].
+    /// disc[6 * column + row].
     double disc[18];
-    // How far rounding may have moved each coordinate of them.
+    /// How far rounding may have moved each coordinate of them.
     double rounding[6];
-    // 1: the contact can exert nothing.
+    /// 1: the contact can exert nothing.
     uint32_t empty;
 } qdist_primitive_f64;
 
-// What the joints of a finger can do about a contact.
+/// What the joints of a finger can do about a contact.
 typedef struct {
-    // The rank of the Jacobian, 0 to 4.
+    /// The rank of the Jacobian, 0 to 4.
     uint32_t rank;
-    // 1: the joints can press within friction.
+    /// 1: the joints can press within friction.
     uint32_t can_press;
-    // The dimension of the set of active forces with unit normal force, 0 (one force) to 3.
+    /// The dimension of the set of active forces with unit normal force, 0 (one force) to 3.
     uint32_t dimension;
-    // 1 less the square of the friction that the force in the middle needs; below 0: the joints press outside of the friction cone.
+    /// 1 less the square of the friction that the force in the middle needs; below 0: the joints press outside of the friction cone.
     double delta;
 } qdist_active_f64;
 
-// Primitives of `count` contacts, whoever generates the forces: joints, or the structure. `primitives` has room for as many.
-//
-// which: NULL; or after an error that is a contact's, its index is written there.
-qdist_status qdist_passive_primitives_f64(const qdist_contact_f64 *contacts,
-                                          uint32_t count,
-                                          const qdist_wrench_frame_f64 *frame,
-                                          qdist_primitive_f64 *primitives,
-                                          uint32_t *which);
+/// Primitives of `count` contacts. active: 0: whoever generates the forces, joints or the structure; 1: of the forces that joint torques generate,
+/// for contacts of fingers, and of all forces, for those of the palm. `primitives` has room for as many.
+///
+/// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
+/// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
+/// which: NULL; or after an error that is a contact's, its index is written there.
+QDIST_API
+qdist_status qdist_primitives_f64(const qdist_contact_f64 *contacts,
+                                  uint32_t count,
+                                  const qdist_wrench_frame_f64 *frame,
+                                  uint32_t active,
+                                  double rank_tolerance,
+                                  qdist_primitive_f64 *primitives,
+                                  uint32_t *which);
 
-// Primitives of the forces that joint torques generate, for contacts of fingers; of all forces, for those of the palm.
-//
-// rank_tolerance: decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force may be from what the
-// joints generate. 0: 1e-9 (float: 4e-6). The other arguments as above.
-qdist_status qdist_active_primitives_f64(const qdist_contact_f64 *contacts,
-                                         uint32_t count,
-                                         const qdist_wrench_frame_f64 *frame,
-                                         double rank_tolerance,
-                                         qdist_primitive_f64 *primitives,
-                                         uint32_t *which);
-
-// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
+/// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
+QDIST_API
 qdist_status qdist_active_forces_f64(const qdist_contact_f64 *contact,
                                      const qdist_wrench_frame_f64 *frame,
                                      double rank_tolerance,
                                      qdist_active_f64 *active);
 
-// The smallest subspace of R^6 that contains the wrenches of `count` primitives: its dimension, 0 to 6, and an orthonormal basis: coordinate k
-// of vector j is basis[6 * j + k]. Unused vectors are 0.
-//
-// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
+/// The smallest subspace of R^6 that contains the wrenches of `count` primitives: its dimension, 0 to 6, and an orthonormal basis: coordinate k
+/// of vector j is basis[6 * j + k]. Unused vectors are 0.
+///
+/// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
+QDIST_API
 qdist_status qdist_wrench_subspace_f64(const qdist_primitive_f64 *primitives,
                                        uint32_t count,
                                        double rank_tolerance,
@@ -256,68 +253,64 @@ qdist_status qdist_wrench_subspace_f64(const qdist_primitive_f64 *primitives,
 /* ========================================================= WRENCH SETS =========================================================
  *
  * The wrenches that a grasp can exert on the object with contact forces of size up to 1: a set of dimension 6, for qdist_solve6 with
- * any Q. The external wrench that it resists is the negative. qdist_solve6 gives the force efficiency d of the grasp; qdist_solve_in_span6 that
+ * any Q. The external wrench that it resists is the negative. qdist_solve6 gives the force efficiency d of the grasp; qdist_solve_in_span that
  * in the smallest subspace, for the active wrenches of fingers that cannot move in all directions; a segment as Q asks how large one wrench
  * may be. In the result, `direction` is the weakest one, and the wrench of d * Q that is farthest along it the one that is hardest to exert. */
 
-// The wrench set of a list of primitives, 1 or more, with {0} in it. The list must outlive the sets that are made of it.
+/// The wrench set of a list of primitives, 1 or more, with {0} in it. The list must outlive the sets that are made of it.
 typedef struct {
     const qdist_primitive_f64 *primitives;
     uint32_t count;
-    // QDIST_L1 or QDIST_LINF.
+    /// QDIST_L1 or QDIST_LINF.
     qdist_norm norm;
 } qdist_wrenches_f64;
 
-// Makes a set of a list of primitives. Reads all of them.
-qdist_status qdist_set_wrenches_f64(qdist_set_f64 *set, const qdist_wrenches_f64 *wrenches);
-
-// Support function of a wrench set.
-int32_t qdist_wrenches_support_f64(void *user, const double *direction, double *point);
-
-// Which mirror images of a wrench set are the set itself, by comparison of all primitives.
-int32_t qdist_wrenches_mirrored_f64(void *user, uint32_t signs);
+/// Makes a set of a list of primitives. Reads all of them.
+QDIST_API qdist_status qdist_set_wrenches_f64(qdist_set_f64 *set, const qdist_wrenches_f64 *wrenches);
 
 /* ==================================================== QUESTIONS ABOUT GRASPS ====================================================
  *
  * Force closure, and the best of many grasps. The depth itself, contact forces for one wrench (a segment as Q) and "is it at least so
  * much?" (use_threshold of the options) are what qdist_solve6 answers. */
 
-// Is a grasp force-closed?
+/// Is a grasp force-closed?
 typedef struct {
-    // sizeof(qdist_closure_f64); set it before the call.
+    /// sizeof(qdist_closure_f64); set it before the call.
     uint32_t struct_size;
-    // QDIST_CLOSURE_OPEN, QDIST_CLOSURE_CLOSED or QDIST_CLOSURE_UNDECIDED.
+    /// QDIST_CLOSURE_OPEN, QDIST_CLOSURE_CLOSED or QDIST_CLOSURE_UNDECIDED.
     qdist_closure verdict;
-    // QDIST_CLOSURE_CLOSED: the wrench set contains the ball of this radius, which proves closure; d can be much larger. Else 0.
+    /// QDIST_CLOSURE_CLOSED: the wrench set contains the ball of this radius, which proves closure; d can be much larger. Else 0.
     double radius;
-    // QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w above its own rounding; the external wrench -u
-    // is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
+    /// QDIST_CLOSURE_OPEN: a unit vector u such that no contact forces exert a wrench w with u.w above its own rounding; the external wrench -u
+    /// is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
     double direction[6];
 } qdist_closure_f64;
 
-// The best of a list of sets.
+/// The best of a list of sets.
 typedef struct {
-    // sizeof(qdist_best_f64); set it before the call.
+    /// sizeof(qdist_best_f64); set it before the call.
     uint32_t struct_size;
-    // Its place in the list, from 0.
+    /// Its place in the list, from 0.
     uint32_t index;
-    // No set of the list has a larger d than this.
+    /// No set of the list has a larger d than this.
     double ceiling;
-    // Its result; its struct_size, too, is set before the call.
+    /// Its result; its struct_size, too, is set before the call.
     qdist_result_f64 result;
 } qdist_best_f64;
 
-// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
-// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
-// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
+/// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
+/// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
+/// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
+QDIST_API
 qdist_status qdist_force_closure_f64(qdist_solver *solver,
                                      const qdist_set_f64 *set,
                                      const qdist_options_f64 *options,
                                      qdist_closure_f64 *closure);
 
-// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
-// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
-// that they have.
+/// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
+/// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
+/// that they have.
+QDIST_API
 qdist_status qdist_best_of6_f64(qdist_solver *solver,
                                 const qdist_set_f64 *sets,
                                 uint32_t count,
@@ -331,59 +324,61 @@ qdist_status qdist_best_of6_f64(qdist_solver *solver,
  * contacts (`make figures`), no solver and no memory but the stack, 16 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
  * themselves. */
 
-// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the
-// search begins anew without it. Plain numbers; start with `= {0}`.
+/// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the
+/// search begins anew without it. Plain numbers; start with `= {0}`.
 typedef struct {
-    // 0 to 6.
+    /// 0 to 6.
     uint32_t count;
-    // Coordinate k of direction i is directions[6 * i + k].
+    /// Coordinate k of direction i is directions[6 * i + k].
     double directions[36];
 } qdist_force_memory_f64;
 
-// When a search for contact forces ends. NULL stands for the defaults.
+/// When a search for contact forces ends. NULL stands for the defaults.
 typedef struct {
-    // sizeof(qdist_force_options_f64).
+    /// sizeof(qdist_force_options_f64).
     uint32_t struct_size;
-    // The most calls of the support function, beside some 20 at the beginning; 0: 1000. With a memory twice as many at most.
+    /// The most calls of the support function, beside some 20 at the beginning; 0: 1000. With a memory twice as many at most.
     uint32_t max_iterations;
-    // The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
+    /// The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
     double relative;
-    // Larger forces are of no interest: the search ends when the least size is known to be above; 0: no limit.
+    /// Larger forces are of no interest: the search ends when the least size is known to be above; 0: no limit.
     double limit;
 } qdist_force_options_f64;
 
-// What is known about the least size of contact forces that resist a wrench.
+/// What is known about the least size of contact forces that resist a wrench.
 typedef struct {
-    // sizeof(qdist_forces_f64); set it before the call.
+    /// sizeof(qdist_forces_f64); set it before the call.
     uint32_t struct_size;
-    // What was concluded.
+    /// What was concluded.
     qdist_force_outcome outcome;
-    // All forces that resist the wrench have at least this size: `direction` proves it. DBL_MAX (float: FLT_MAX): no forces do.
+    /// All forces that resist the wrench have at least this size: `direction` proves it. DBL_MAX (float: FLT_MAX): no forces do.
     double lower;
-    // The shares have at most this size; DBL_MAX (float: FLT_MAX): none were found, and all shares are 0.
+    /// The shares have at most this size; DBL_MAX (float: FLT_MAX): none were found, and all shares are 0.
     double upper;
-    // The unit vector u that proves `lower`: u.w / h_W(u), with w the negative of the external wrench.
+    /// The unit vector u that proves `lower`: u.w / h_W(u), with w the negative of the external wrench.
     double direction[6];
-    // |sum of the shares + external wrench|: how far the shares are from equilibrium. The bracket is that of what they exert.
+    /// |sum of the shares + external wrench|: how far the shares are from equilibrium. The bracket is that of what they exert.
     double residual;
-    // Calls of the support function, those at the beginning not counted.
+    /// Calls of the support function, those at the beginning not counted.
     uint32_t iterations;
-    // QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
+    /// QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
     int32_t callback_code;
 } qdist_forces_f64;
 
-// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
-// times position. `force` and `moment` are three numbers, `wrench` six.
+/// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
+/// times position. `force` and `moment` are three numbers, `wrench` six.
+QDIST_API
 qdist_status qdist_wrench_f64(const qdist_wrench_frame_f64 *frame,
                               const double *force,
                               const double *moment,
                               double *wrench);
 
-// The smallest contact forces that keep the object in equilibrium with an external wrench.
-//
-// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
-// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
-// negative of the external wrench. qdist_contact_force makes a force of it.
+/// The smallest contact forces that keep the object in equilibrium with an external wrench.
+///
+/// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
+/// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
+/// negative of the external wrench. qdist_contact_force makes a force of it.
+QDIST_API
 qdist_status qdist_contact_forces_f64(const qdist_wrenches_f64 *wrenches,
                                       qdist_force_memory_f64 *memory,
                                       const double *external,
@@ -391,8 +386,9 @@ qdist_status qdist_contact_forces_f64(const qdist_wrenches_f64 *wrenches,
                                       double *shares,
                                       qdist_forces_f64 *result);
 
-// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
-// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+/// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
+/// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+QDIST_API
 qdist_status qdist_contact_force_f64(const qdist_contact_f64 *contact,
                                      const qdist_wrench_frame_f64 *frame,
                                      const double *share,
@@ -403,44 +399,45 @@ qdist_status qdist_contact_force_f64(const qdist_contact_f64 *contact,
  * How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
  * Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why. */
 
-// The weakest direction to rounding.
+/// The weakest direction to rounding.
 typedef struct {
-    // sizeof(qdist_refined_f64); set it before the call.
+    /// sizeof(qdist_refined_f64); set it before the call.
     uint32_t struct_size;
-    // QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
+    /// QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
     qdist_kink kink;
-    // d is not more; not above that of the result. (`lower` stays as it is: only the result's bracket tells how far a deeper minimum may be.)
+    /// d is not more; not above that of the result. (`lower` stays as it is: only the result's bracket tells how far a deeper minimum may be.)
     double upper;
-    // The unit vector that proves `upper`.
+    /// The unit vector that proves `upper`.
     double direction[6];
 } qdist_refined_f64;
 
-// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
+/// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
 typedef struct {
-    // 0: there is none, and all numbers are 0: a kink, or a contact whose joints press on the very edge of its friction cone.
+    /// 0: there is none, and all numbers are 0: a kink, or a contact whose joints press on the very edge of its friction cone.
     uint32_t known;
-    // 0: not with respect to the Jacobian: there is none, or the active forces do not change smoothly with it.
+    /// 0: not with respect to the Jacobian: there is none, or the active forces do not change smoothly with it.
     uint32_t jacobian_known;
-    // With respect to the position.
+    /// With respect to the position.
     double position[3];
-    // With respect to a small turn of n, o and t together, as a rotation vector.
+    /// With respect to a small turn of n, o and t together, as a rotation vector.
     double rotation[3];
-    // With respect to the normal, along the unit sphere; o and t turn with it.
+    /// With respect to the normal, along the unit sphere; o and t turn with it.
     double normal[3];
-    // With respect to mu and mus; 0 where the model has none.
+    /// With respect to mu and mus; 0 where the model has none.
     double mu;
     double mus;
-    // With respect to the force cap.
+    /// With respect to the force cap.
     double force_cap;
-    // With respect to the entries of the Jacobian.
+    /// With respect to the entries of the Jacobian.
     double jacobian[32];
 } qdist_contact_gradient_f64;
 
-// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
-// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
-// tolerance of 1e-2 is usually enough.
-//
-// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+/// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
+/// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
+/// tolerance of 1e-2 is usually enough.
+///
+/// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+QDIST_API
 qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
                                        const qdist_contact_f64 *contacts,
                                        uint32_t count,
@@ -461,67 +458,68 @@ qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
  * program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`make figures`),
  * with up to 43 KB of stack in double (`make stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints. */
 
-// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
+/// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
 typedef struct {
-    // Says that it is a finger.
+    /// Says that it is a finger.
     uint32_t tag;
-    // 1 to 4.
+    /// 1 to 4.
     uint32_t contacts;
-    // That of its frame.
+    /// That of its frame.
     double torque_scale;
-    // Opaque.
-    double words[577];
+    /// Opaque.
+    uint64_t words[577];
 } qdist_finger_f64;
 
-// The wrench set of a list of fingers, 1 or more, with {0} in it. In QDIST_L1 the fingers share one supply; the contacts of one
-// finger do not. The list must outlive the sets that are made of it.
+/// The wrench set of a list of fingers, 1 or more, with {0} in it. In QDIST_L1 the fingers share one supply; the contacts of one
+/// finger do not. The list must outlive the sets that are made of it.
 typedef struct {
     const qdist_finger_f64 *fingers;
     uint32_t count;
-    // QDIST_L1 or QDIST_LINF.
+    /// QDIST_L1 or QDIST_LINF.
     qdist_norm norm;
 } qdist_finger_wrenches_f64;
 
-// Makes a finger of 1 to 4 contacts, all with Jacobians of the same joints, or all without (the palm).
-//
-// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
-// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
-// qdist_active_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
-// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
-//
-// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
-// figures`, `make stack`).
+/// Makes a finger of 1 to 4 contacts, all with Jacobians of the same joints, or all without (the palm).
+///
+/// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
+/// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
+/// qdist_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
+/// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
+///
+/// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
+/// figures`, `make stack`).
+QDIST_API
 qdist_status qdist_finger_init_f64(qdist_finger_f64 *finger,
                                    const qdist_contact_f64 *contacts,
                                    uint32_t count,
+                                   const qdist_wrench_frame_f64 *frame,
                                    const double *limits,
                                    qdist_force_model model,
-                                   const qdist_wrench_frame_f64 *frame,
                                    double rank_tolerance,
                                    uint32_t *which);
 
-// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
+/// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
+QDIST_API
 qdist_status qdist_set_finger_wrenches_f64(qdist_set_f64 *set,
                                            const qdist_finger_wrenches_f64 *wrenches);
 
-// Support function of a set of fingers. It may return QDIST_CALLBACK_UNSOLVED.
-int32_t qdist_finger_wrenches_support_f64(void *user, const double *direction, double *point);
-
-// The contact forces whose wrenches add up to the finger's farthest wrench along a direction, six numbers: force i is forces[4 * i] to
-// forces[4 * i + 3], as qdist_contact_force has it. `forces` has room for 4 * contacts numbers.
-//
-// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
+/// The contact forces whose wrenches add up to the finger's farthest wrench along a direction, six numbers: force i is forces[4 * i] to
+/// forces[4 * i + 3], as qdist_contact_force has it. `forces` has room for 4 * contacts numbers.
+///
+/// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
+QDIST_API
 qdist_status qdist_finger_forces_f64(const qdist_finger_f64 *finger,
                                      const double *direction,
                                      double *forces);
 
-// The smallest contact forces that keep the object in equilibrium with an external wrench, as qdist_contact_forces: share i is that of finger
-// i. Size is measured in force caps and torque limits together: forces of size 1 or less keep all of both.
-//
-// forces: NULL; or room for 16 * count numbers: forces[16 * i + 4 * k] and the three after it become the force of contact k of finger i, as
-// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
-//
-// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
+/// The smallest contact forces that keep the object in equilibrium with an external wrench, as qdist_contact_forces: share i is that of finger
+/// i. Size is measured in force caps and torque limits together: forces of size 1 or less keep all of both.
+///
+/// forces: NULL; or room for 16 * count numbers: forces[16 * i + 4 * k] and the three after it become the force of contact k of finger i, as
+/// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
+///
+/// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
+QDIST_API
 qdist_status qdist_finger_contact_forces_f64(const qdist_finger_wrenches_f64 *wrenches,
                                              qdist_force_memory_f64 *memory,
                                              const double *external,
@@ -537,83 +535,95 @@ qdist_status qdist_finger_contact_forces_f64(const qdist_finger_wrenches_f64 *wr
  * A preset is what one tool does, as read in its source; Q is the unit ball in all of them. Fill in position, normal and friction of each
  * contact, let the preset complete it, make pyramids with its frame and layout, and a set of them with its norm. */
 
-// Where the edges of friction pyramids are.
+/// Where the edges of friction pyramids are.
 typedef struct {
-    // QDIST_LAYOUT_INSCRIBED, QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_GRASPIT or QDIST_LAYOUT_DEX_NET.
+    /// QDIST_LAYOUT_INSCRIBED, QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_GRASPIT or QDIST_LAYOUT_DEX_NET.
     qdist_layout kind;
-    // Edges around the normal, at least 3; GraspIt! has its own.
+    /// Edges around the normal, at least 3; GraspIt! has its own.
     uint32_t sides;
-    // QDIST_LAYOUT_GRASPIT: one millimetre in your unit of length. QDIST_LAYOUT_DEX_NET: radius of the fingertip, 0.005 by its default. Else
-    // not read.
+    /// QDIST_LAYOUT_GRASPIT: one millimetre in your unit of length. QDIST_LAYOUT_DEX_NET: radius of the fingertip, 0.005 by its default. Else
+    /// not read.
     double length;
 } qdist_layout_f64;
 
-// What one tool computes.
+/// What one tool computes.
 typedef struct {
-    // Reference point and torque scale.
+    /// Reference point and torque scale.
     qdist_wrench_frame_f64 frame;
-    // The edges.
+    /// The edges.
     qdist_layout_f64 layout;
-    // How forces of several contacts are measured together.
+    /// How forces of several contacts are measured together.
     qdist_norm norm;
-    // How tangents lie: QDIST_TOOL_GRASPIT, QDIST_TOOL_DEX_NET or QDIST_TOOL_FROGGER.
+    /// How tangents lie: QDIST_TOOL_GRASPIT, QDIST_TOOL_DEX_NET or QDIST_TOOL_FROGGER.
     qdist_tool tool;
 } qdist_preset_f64;
 
-// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
-typedef struct {
-    // Coordinate k of edge j is edges[6 * j + k], a wrench.
-    const double *edges;
-    uint32_t count;
-    // An upper bound of the length of the edges, and of the rounding error of the support function.
-    double extent;
-    double error;
-} qdist_pyramid_f64;
-
-// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.
-typedef struct {
-    const qdist_pyramid_f64 *pyramids;
-    uint32_t count;
-    // QDIST_L1 or QDIST_LINF.
-    qdist_norm norm;
-} qdist_pyramid_wrenches_f64;
-
-// GraspIt! with an object of this centre of gravity, three numbers, and largest radius about it. millimetre: its unit of length in yours. A
-// soft contact's mus is its 8 sqrt(a b) / 15 mu, with a and b the semi axes of the contact ellipse.
+/// GraspIt! with an object of this centre of gravity, three numbers, and largest radius about it. millimetre: its unit of length in yours. A
+/// soft contact's mus is its 8 sqrt(a b) / 15 mu, with a and b the semi axes of the contact ellipse.
+QDIST_API
 qdist_status qdist_preset_graspit_f64(qdist_preset_f64 *preset,
                                       const double *center,
                                       double max_radius,
                                       double millimetre,
                                       qdist_norm norm);
 
-// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
-// configured the median of the three coordinates of the upper corner of the bounding box. Its defaults: 8 sides, and 0.005 for the radius.
-// Its normal force is the cosine between closing direction and normal: set force_cap after qdist_preset_contact.
+/// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
+/// configured the median of the three coordinates of the upper corner of the bounding box. Its defaults: 8 sides, and 0.005 for the radius.
+/// Its normal force is the cosine between closing direction and normal: set force_cap after qdist_preset_contact.
+QDIST_API
 qdist_status qdist_preset_dex_net_f64(qdist_preset_f64 *preset,
                                       const double *center,
                                       double torque_scale,
                                       uint32_t sides,
                                       double finger_radius);
 
-// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
-// qdist_opposed_mean.
+/// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
+/// qdist_opposed_mean.
+QDIST_API
 qdist_status qdist_preset_frogger_f64(qdist_preset_f64 *preset,
                                       uint32_t sides,
                                       double lamb);
 
-// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
-// edges. Of the preset only `tool` counts.
+/// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
+/// edges. Of the preset only `tool` counts.
+QDIST_API
 qdist_status qdist_preset_contact_f64(const qdist_preset_f64 *preset,
                                       qdist_contact_f64 *contact);
 
-// How many edges the pyramid of a contact with this friction has.
-qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout, qdist_friction friction, uint32_t *edges);
+/* ====================================================== FRICTION PYRAMIDS ======================================================
+ *
+ * Pyramids of contacts, by the layout of a preset or one of yours, and their wrench sets. */
 
-// Pyramids of `count` contacts: their edges, one contact's after the other's, go to `edges`, with room for `capacity` edges of six numbers, and
-// `pyramids`, with room for `count`, points there.
-//
-// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
-// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+/// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
+typedef struct {
+    /// Coordinate k of edge j is edges[6 * j + k], a wrench.
+    const double *edges;
+    uint32_t count;
+    /// An upper bound of the length of the edges, and of the rounding error of the support function.
+    double extent;
+    double error;
+} qdist_pyramid_f64;
+
+/// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.
+typedef struct {
+    const qdist_pyramid_f64 *pyramids;
+    uint32_t count;
+    /// QDIST_L1 or QDIST_LINF.
+    qdist_norm norm;
+} qdist_pyramid_wrenches_f64;
+
+/// How many edges the pyramid of a contact with this friction has.
+QDIST_API
+qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
+                                     qdist_friction friction,
+                                     uint32_t *edges);
+
+/// Pyramids of `count` contacts: their edges, one contact's after the other's, go to `edges`, with room for `capacity` edges of six numbers, and
+/// `pyramids`, with room for `count`, points there.
+///
+/// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
+/// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+QDIST_API
 qdist_status qdist_pyramids_f64(const qdist_contact_f64 *contacts,
                                 uint32_t count,
                                 const qdist_wrench_frame_f64 *frame,
@@ -623,20 +633,15 @@ qdist_status qdist_pyramids_f64(const qdist_contact_f64 *contacts,
                                 qdist_pyramid_f64 *pyramids,
                                 uint32_t *which);
 
-// Makes a set of a list of pyramids. Reads all edges.
-qdist_status qdist_set_pyramid_wrenches_f64(qdist_set_f64 *set, const qdist_pyramid_wrenches_f64 *wrenches);
+/// Makes a set of a list of pyramids. Reads all edges.
+QDIST_API qdist_status qdist_set_pyramid_wrenches_f64(qdist_set_f64 *set, const qdist_pyramid_wrenches_f64 *wrenches);
 
-// Support function of a set of pyramids.
-int32_t qdist_pyramid_wrenches_support_f64(void *user, const double *direction, double *point);
-
-// Minus the mean of all edges, as a segment for Q: d of the set with QDIST_L1 is then the t of FRoGGeR's min-weight metric, see qdist_min_weight.
-// QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
-qdist_status qdist_opposed_mean_f64(const qdist_pyramid_f64 *pyramids,
-                                    uint32_t count,
-                                    qdist_segment_unit_f64 *segment);
-
-// FRoGGeR's normalised min-weight metric N l from t: t / (1 + t). Increasing in t, so that it takes a bracket to a bracket. Its default asks for 0.3.
-double qdist_min_weight_f64(double t);
+/// Minus the mean of all edges, as a segment for Q: d of the set with QDIST_L1 is then the t of FRoGGeR's min-weight metric N l = t / (1 + t), which
+/// increases in t, so that it takes a bracket to a bracket. Its default asks for N l = 0.3. QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
+QDIST_API
+qdist_status qdist_opposed_mean_f64(qdist_segment_unit_f64 *segment,
+                                    const qdist_pyramid_f64 *pyramids,
+                                    uint32_t count);
 
 /* ================================================= CONTACTS AND FINGERS, FLOAT ================================================= */
 
@@ -672,24 +677,22 @@ typedef struct {
     float delta;
 } qdist_active_f32;
 
-qdist_status qdist_passive_primitives_f32(const qdist_contact_f32 *contacts,
-                                          uint32_t count,
-                                          const qdist_wrench_frame_f32 *frame,
-                                          qdist_primitive_f32 *primitives,
-                                          uint32_t *which);
+QDIST_API
+qdist_status qdist_primitives_f32(const qdist_contact_f32 *contacts,
+                                  uint32_t count,
+                                  const qdist_wrench_frame_f32 *frame,
+                                  uint32_t active,
+                                  float rank_tolerance,
+                                  qdist_primitive_f32 *primitives,
+                                  uint32_t *which);
 
-qdist_status qdist_active_primitives_f32(const qdist_contact_f32 *contacts,
-                                         uint32_t count,
-                                         const qdist_wrench_frame_f32 *frame,
-                                         float rank_tolerance,
-                                         qdist_primitive_f32 *primitives,
-                                         uint32_t *which);
-
+QDIST_API
 qdist_status qdist_active_forces_f32(const qdist_contact_f32 *contact,
                                      const qdist_wrench_frame_f32 *frame,
                                      float rank_tolerance,
                                      qdist_active_f32 *active);
 
+QDIST_API
 qdist_status qdist_wrench_subspace_f32(const qdist_primitive_f32 *primitives,
                                        uint32_t count,
                                        float rank_tolerance,
@@ -704,11 +707,7 @@ typedef struct {
     qdist_norm norm;
 } qdist_wrenches_f32;
 
-qdist_status qdist_set_wrenches_f32(qdist_set_f32 *set, const qdist_wrenches_f32 *wrenches);
-
-int32_t qdist_wrenches_support_f32(void *user, const float *direction, float *point);
-
-int32_t qdist_wrenches_mirrored_f32(void *user, uint32_t signs);
+QDIST_API qdist_status qdist_set_wrenches_f32(qdist_set_f32 *set, const qdist_wrenches_f32 *wrenches);
 
 /* ================================================ QUESTIONS ABOUT GRASPS, FLOAT ================================================ */
 
@@ -726,11 +725,13 @@ typedef struct {
     qdist_result_f32 result;
 } qdist_best_f32;
 
+QDIST_API
 qdist_status qdist_force_closure_f32(qdist_solver *solver,
                                      const qdist_set_f32 *set,
                                      const qdist_options_f32 *options,
                                      qdist_closure_f32 *closure);
 
+QDIST_API
 qdist_status qdist_best_of6_f32(qdist_solver *solver,
                                 const qdist_set_f32 *sets,
                                 uint32_t count,
@@ -763,11 +764,13 @@ typedef struct {
     int32_t callback_code;
 } qdist_forces_f32;
 
+QDIST_API
 qdist_status qdist_wrench_f32(const qdist_wrench_frame_f32 *frame,
                               const float *force,
                               const float *moment,
                               float *wrench);
 
+QDIST_API
 qdist_status qdist_contact_forces_f32(const qdist_wrenches_f32 *wrenches,
                                       qdist_force_memory_f32 *memory,
                                       const float *external,
@@ -775,6 +778,7 @@ qdist_status qdist_contact_forces_f32(const qdist_wrenches_f32 *wrenches,
                                       float *shares,
                                       qdist_forces_f32 *result);
 
+QDIST_API
 qdist_status qdist_contact_force_f32(const qdist_contact_f32 *contact,
                                      const qdist_wrench_frame_f32 *frame,
                                      const float *share,
@@ -801,6 +805,7 @@ typedef struct {
     float jacobian[32];
 } qdist_contact_gradient_f32;
 
+QDIST_API
 qdist_status qdist_grasp_gradients_f32(const qdist_wrenches_f32 *wrenches,
                                        const qdist_contact_f32 *contacts,
                                        uint32_t count,
@@ -819,7 +824,7 @@ typedef struct {
     uint32_t tag;
     uint32_t contacts;
     float torque_scale;
-    float words[577];
+    uint64_t words[289];
 } qdist_finger_f32;
 
 typedef struct {
@@ -828,21 +833,21 @@ typedef struct {
     qdist_norm norm;
 } qdist_finger_wrenches_f32;
 
+QDIST_API
 qdist_status qdist_finger_init_f32(qdist_finger_f32 *finger,
                                    const qdist_contact_f32 *contacts,
                                    uint32_t count,
+                                   const qdist_wrench_frame_f32 *frame,
                                    const float *limits,
                                    qdist_force_model model,
-                                   const qdist_wrench_frame_f32 *frame,
                                    float rank_tolerance,
                                    uint32_t *which);
 
-qdist_status qdist_set_finger_wrenches_f32(qdist_set_f32 *set, const qdist_finger_wrenches_f32 *wrenches);
+QDIST_API qdist_status qdist_set_finger_wrenches_f32(qdist_set_f32 *set, const qdist_finger_wrenches_f32 *wrenches);
 
-int32_t qdist_finger_wrenches_support_f32(void *user, const float *direction, float *point);
+QDIST_API qdist_status qdist_finger_forces_f32(const qdist_finger_f32 *finger, const float *direction, float *forces);
 
-qdist_status qdist_finger_forces_f32(const qdist_finger_f32 *finger, const float *direction, float *forces);
-
+QDIST_API
 qdist_status qdist_finger_contact_forces_f32(const qdist_finger_wrenches_f32 *wrenches,
                                              qdist_force_memory_f32 *memory,
                                              const float *external,
@@ -866,6 +871,26 @@ typedef struct {
     qdist_tool tool;
 } qdist_preset_f32;
 
+QDIST_API
+qdist_status qdist_preset_graspit_f32(qdist_preset_f32 *preset,
+                                      const float *center,
+                                      float max_radius,
+                                      float millimetre,
+                                      qdist_norm norm);
+
+QDIST_API
+qdist_status qdist_preset_dex_net_f32(qdist_preset_f32 *preset,
+                                      const float *center,
+                                      float torque_scale,
+                                      uint32_t sides,
+                                      float finger_radius);
+
+QDIST_API qdist_status qdist_preset_frogger_f32(qdist_preset_f32 *preset, uint32_t sides, float lamb);
+
+QDIST_API qdist_status qdist_preset_contact_f32(const qdist_preset_f32 *preset, qdist_contact_f32 *contact);
+
+/* =================================================== FRICTION PYRAMIDS, FLOAT =================================================== */
+
 typedef struct {
     const float *edges;
     uint32_t count;
@@ -879,24 +904,12 @@ typedef struct {
     qdist_norm norm;
 } qdist_pyramid_wrenches_f32;
 
-qdist_status qdist_preset_graspit_f32(qdist_preset_f32 *preset,
-                                      const float *center,
-                                      float max_radius,
-                                      float millimetre,
-                                      qdist_norm norm);
+QDIST_API
+qdist_status qdist_pyramid_edges_f32(const qdist_layout_f32 *layout,
+                                     qdist_friction friction,
+                                     uint32_t *edges);
 
-qdist_status qdist_preset_dex_net_f32(qdist_preset_f32 *preset,
-                                      const float *center,
-                                      float torque_scale,
-                                      uint32_t sides,
-                                      float finger_radius);
-
-qdist_status qdist_preset_frogger_f32(qdist_preset_f32 *preset, uint32_t sides, float lamb);
-
-qdist_status qdist_preset_contact_f32(const qdist_preset_f32 *preset, qdist_contact_f32 *contact);
-
-qdist_status qdist_pyramid_edges_f32(const qdist_layout_f32 *layout, qdist_friction friction, uint32_t *edges);
-
+QDIST_API
 qdist_status qdist_pyramids_f32(const qdist_contact_f32 *contacts,
                                 uint32_t count,
                                 const qdist_wrench_frame_f32 *frame,
@@ -906,13 +919,12 @@ qdist_status qdist_pyramids_f32(const qdist_contact_f32 *contacts,
                                 qdist_pyramid_f32 *pyramids,
                                 uint32_t *which);
 
-qdist_status qdist_set_pyramid_wrenches_f32(qdist_set_f32 *set, const qdist_pyramid_wrenches_f32 *wrenches);
+QDIST_API qdist_status qdist_set_pyramid_wrenches_f32(qdist_set_f32 *set, const qdist_pyramid_wrenches_f32 *wrenches);
 
-int32_t qdist_pyramid_wrenches_support_f32(void *user, const float *direction, float *point);
-
-qdist_status qdist_opposed_mean_f32(const qdist_pyramid_f32 *pyramids, uint32_t count, qdist_segment_unit_f32 *segment);
-
-float qdist_min_weight_f32(float t);
+QDIST_API
+qdist_status qdist_opposed_mean_f32(qdist_segment_unit_f32 *segment,
+                                    const qdist_pyramid_f32 *pyramids,
+                                    uint32_t count);
 
 #ifdef __cplusplus
 }

@@ -9,7 +9,7 @@
  *     qdist_mesh_depth depth;
  *     uint32_t which;
  *
- *     qdist_mesh_create(xyz, 4, triangles, 4, &which, &mesh);
+ *     qdist_mesh_create(xyz, 4, triangles, 4, &mesh, &which);
  *     qdist_mesh_certify(mesh, &body);      a second mesh, with what lower bounds come from; of meshes without, `lower` is 0
  *     qdist_mesh_pair_create(body, body, &pair);
  *     depth.struct_size = sizeof depth;
@@ -51,19 +51,20 @@ extern "C" {
  * malloc and free of the system, or yours. It is chosen for the whole process, once, since memory must go back where it came from.
  * (A static library has a heap interface of its own: your program's malloc is not replaced.) */
 
-// Functions that allocate. They may be called by all threads that call the library, at the same time, and must not unwind, longjmp, or call it.
+/// Functions that allocate. They may be called by all threads that call the library, at the same time, and must not unwind, longjmp, or call it.
 typedef struct {
-    // Memory of `size` bytes, at least 1, aligned to `align`, a power of two, which may be more than malloc's own (a cache line); or NULL
-    // when there is none. Then the process is aborted: the library's containers cannot go on without.
+    /// Memory of `size` bytes, at least 1, aligned to `align`, a power of two, which may be more than malloc's own (a cache line); or NULL
+    /// when there is none. Then the process is aborted: the library's containers cannot go on without.
     void *(*alloc)(void *user, size_t size, size_t align);
-    // Takes back what `alloc` returned for the same size and alignment.
+    /// Takes back what `alloc` returned for the same size and alignment.
     void (*free)(void *user, void *memory, size_t size, size_t align);
-    // For both.
+    /// For both.
     void *user;
 } qdist_allocator;
 
-// Sets the allocator of the process. The struct is not copied: it must stay valid and unchanged until the process ends. Once only, and before
-// the first mesh: afterwards QDIST_ERROR_ALLOCATOR.
+/// Sets the allocator of the process. The struct is not copied: it must stay valid and unchanged until the process ends. Once only, and before
+/// the first mesh: afterwards QDIST_ERROR_ALLOCATOR.
+QDIST_API
 qdist_status qdist_mesh_set_allocator(const qdist_allocator *allocator);
 
 /* ============================================================ MESHES ============================================================
@@ -73,83 +74,87 @@ qdist_status qdist_mesh_set_allocator(const qdist_allocator *allocator);
  * seen from outside, the mesh bounds a solid and is treated as one: what lies inside collides. Otherwise it is a surface without an
  * inside (a polygon soup), and queries see the surface only. */
 
-// "There is none", where an index is expected.
+/// "There is none", where an index is expected.
 #define QDIST_MESH_NONE 4294967295
 
-// A mesh: opaque.
+/// A mesh: opaque.
 typedef struct qdist_mesh qdist_mesh;
 
-// What is wrong with a mesh, and where: a number of defects and the first of them, QDIST_MESH_NONE if there is none. Edges are given by
-// their two vertices; triangles and vertices by their place in your arrays.
+/// What is wrong with a mesh, and where: a number of defects and the first of them, QDIST_MESH_NONE if there is none. Edges are given by
+/// their two vertices; triangles and vertices by their place in your arrays.
 typedef struct {
-    // sizeof(qdist_mesh_report); set it before the call.
+    /// sizeof(qdist_mesh_report); set it before the call.
     uint32_t struct_size;
-    // 1 if the mesh bounds a solid, else 0.
+    /// 1 if the mesh bounds a solid, else 0.
     uint32_t solid;
-    // 1 if it bounds a solid and there is no defect at all, else 0.
+    /// 1 if it bounds a solid and there is no defect at all, else 0.
     uint32_t clean;
-    // Number of parts that are connected by edges.
+    /// Number of parts that are connected by edges.
     uint32_t components;
-    // Edges of one triangle only.
+    /// Edges of one triangle only.
     uint32_t open_edges;
     uint32_t first_open_edge[2];
-    // Edges of more than two triangles.
+    /// Edges of more than two triangles.
     uint32_t non_manifold_edges;
     uint32_t first_non_manifold_edge[2];
-    // Edges of two triangles that both use it in the same direction: one of them is wound the wrong way.
+    /// Edges of two triangles that both use it in the same direction: one of them is wound the wrong way.
     uint32_t inconsistent_edges;
     uint32_t first_inconsistent_edge[2];
-    // Triangles without area, to rounding of their coordinates.
+    /// Triangles without area, to rounding of their coordinates.
     uint32_t degenerate_triangles;
     uint32_t first_degenerate_triangle;
-    // Triangles with the same three vertices as one before, in any order.
+    /// Triangles with the same three vertices as one before, in any order.
     uint32_t duplicate_triangles;
     uint32_t first_duplicate_triangle;
-    // Vertices of no triangle.
+    /// Vertices of no triangle.
     uint32_t unreferenced_vertices;
     uint32_t first_unreferenced_vertex;
-    // Closed components that are wound inward and are no cavity of another.
+    /// Closed components that are wound inward and are no cavity of another.
     uint32_t inverted_components;
-    // Closed components without volume, to rounding.
+    /// Closed components without volume, to rounding.
     uint32_t flat_components;
 } qdist_mesh_report;
 
-// Volume integrals at density 1.
+/// Volume integrals at density 1.
 typedef struct {
-    // Positive.
+    /// Positive.
     double volume;
-    // Centre of mass, in the mesh's frame.
+    /// Centre of mass, in the mesh's frame.
     double centre[3];
-    // Inertia tensor about the centre of mass, integral of |x|^2 1 - x x^T, in the mesh's axes, row-major.
+    /// Inertia tensor about the centre of mass, integral of |x|^2 1 - x x^T, in the mesh's axes, row-major.
     double inertia[9];
 } qdist_mesh_mass;
 
-// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
-// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`make figures`).
-//
-// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
-// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+/// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
+/// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`make figures`).
+///
+/// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
+/// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+QDIST_API
 qdist_status qdist_mesh_create(const double *xyz,
                                uint32_t vertex_count,
                                const uint32_t *triangles,
                                uint32_t triangle_count,
-                               uint32_t *which,
-                               qdist_mesh **mesh);
+                               qdist_mesh **mesh,
+                               uint32_t *which);
 
-// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
-// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
-// rounding cannot tell it, or a coordinate is above 1e50.
+/// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
+/// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
+/// rounding cannot tell it, or a coordinate is above 1e50.
+QDIST_API
 qdist_status qdist_mesh_certify(const qdist_mesh *mesh,
                                 qdist_mesh **certified);
 
-// Frees a mesh; NULL is nothing. Pairs of it stay valid: they share what they need, and the last one frees it.
-void qdist_mesh_free(qdist_mesh *mesh);
+/// Frees a mesh; NULL is nothing. Pairs of it stay valid: they share what they need, and the last one frees it.
+QDIST_API void qdist_mesh_free(qdist_mesh *mesh);
 
-// What is wrong with the mesh, and whether it bounds a solid. Intersections of the mesh with itself are not looked for. O(1).
+/// What is wrong with the mesh, and whether it bounds a solid. Intersections of the mesh with itself are not looked for. O(1).
+QDIST_API
 qdist_status qdist_mesh_check(const qdist_mesh *mesh,
                               qdist_mesh_report *report);
 
-// Volume, centre of mass and inertia of the solid, or QDIST_ERROR_MESH_NOT_SOLID. Allocates for the time of the call; O(n log n).
+/// Volume, centre of mass and inertia of the solid, or QDIST_ERROR_MESH_NOT_SOLID. Allocates for the time of the call; O(n log n).
+QDIST_API
 qdist_status qdist_mesh_integrate(const qdist_mesh *mesh,
                                   qdist_mesh_mass *mass);
 
@@ -158,87 +163,90 @@ qdist_status qdist_mesh_integrate(const qdist_mesh *mesh,
  * Two meshes and the memory that their queries reuse. A moves, B rests. A pair serves one call at a time; make one per thread, meshes are
  * shared. */
 
-// A pair: opaque.
+/// A pair: opaque.
 typedef struct qdist_mesh_pair qdist_mesh_pair;
 
-// Where A is, in the frame of B: x_B = R x_A + t.
+/// Where A is, in the frame of B: x_B = R x_A + t.
 typedef struct {
-    // The rotation R as a quaternion (w, x, y, z) of unit length, to 1e-6; it is normalised.
+    /// The rotation R as a quaternion (w, x, y, z) of unit length, to 1e-6; it is normalised.
     double rotation[4];
-    // t, coordinates of at most 1e60.
+    /// t, coordinates of at most 1e60.
     double translation[3];
 } qdist_mesh_pose;
 
-// What of a mesh touches or is nearest?
+/// What of a mesh touches or is nearest?
 typedef uint32_t qdist_mesh_feature;
 
-// Nearest points of two surfaces, in the frame of B.
+/// Nearest points of two surfaces, in the frame of B.
 typedef struct {
-    // 0 where the surfaces meet.
+    /// 0 where the surfaces meet.
     double distance;
-    // A point of A.
+    /// A point of A.
     double on_a[3];
-    // A point of B.
+    /// A point of B.
     double on_b[3];
-    // Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     qdist_mesh_feature feature_a;
     uint32_t index_a;
-    // Where on B.
+    /// Where on B.
     qdist_mesh_feature feature_b;
     uint32_t index_b;
 } qdist_mesh_distance;
 
-// Two features at a local minimum of their distance, in the frame of B.
+/// Two features at a local minimum of their distance, in the frame of B.
 typedef struct {
-    // Distance of the points, at least 0.
+    /// Distance of the points, at least 0.
     double gap;
-    // A point of A.
+    /// A point of A.
     double on_a[3];
-    // A point of B.
+    /// A point of B.
     double on_b[3];
-    // Unit direction from B to A.
+    /// Unit direction from B to A.
     double normal[3];
-    // Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     qdist_mesh_feature feature_a;
     uint32_t index_a;
-    // Where on B.
+    /// Where on B.
     qdist_mesh_feature feature_b;
     uint32_t index_b;
 } qdist_mesh_contact;
 
-// A vertex; index: its place in your array.
+/// A vertex; index: its place in your array.
 #define QDIST_MESH_VERTEX 0
 
-// An edge; index: a number of the library's own, the same at every call.
+/// An edge; index: a number of the library's own, the same at every call.
 #define QDIST_MESH_EDGE 1
 
-// A triangle; index: its place in your array.
+/// A triangle; index: its place in your array.
 #define QDIST_MESH_FACE 2
 
-// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
-qdist_status qdist_mesh_pair_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_pair **pair);
+/// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
+QDIST_API qdist_status qdist_mesh_pair_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_pair **pair);
 
-// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
-void qdist_mesh_pair_free(qdist_mesh_pair *pair);
+/// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
+QDIST_API void qdist_mesh_pair_free(qdist_mesh_pair *pair);
 
-// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
-// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
+/// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
+/// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
+QDIST_API
 qdist_status qdist_mesh_pair_collides(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
                                       uint32_t *collides);
 
-// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
-// microseconds (`make figures`), and less where the pose has changed little.
+/// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
+/// microseconds (`make figures`), and less where the pose has changed little.
+QDIST_API
 qdist_status qdist_mesh_pair_distance(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
                                       qdist_mesh_distance *distance);
 
-// Contacts with a gap of at most `margin`, in the order of their features, each pair of features once: only local minima of the distance,
-// through which the bodies will touch when they move a little. Parallel faces and edges touch along an area; its corners are the contacts.
-// For a pose that does not collide; otherwise features that have passed through each other are still found.
-//
-// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
-// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
+/// Contacts with a gap of at most `margin`, in the order of their features, each pair of features once: only local minima of the distance,
+/// through which the bodies will touch when they move a little. Parallel faces and edges touch along an area; its corners are the contacts.
+/// For a pose that does not collide; otherwise features that have passed through each other are still found.
+///
+/// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
+/// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
+QDIST_API
 qdist_status qdist_mesh_pair_contacts(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
                                       double margin,
@@ -250,51 +258,51 @@ qdist_status qdist_mesh_pair_contacts(qdist_mesh_pair *pair,
  *
  * How far is one pose of A from another? A length, in each case, that depends on A's motion only. */
 
-// Which metric?
+/// Which metric?
 typedef uint32_t qdist_mesh_metric;
 
-// The distance between two poses, a length: 0 between equal poses, and proportional to A's scale. A pose for which it is negative or not finite is
-// never an answer.
+/// The distance between two poses, a length: 0 between equal poses, and proportional to A's scale. A pose for which it is negative or not finite is
+/// never an answer.
 typedef double (*qdist_mesh_own_distance)(void *user, const qdist_mesh_pose *from, const qdist_mesh_pose *to);
 
-// The square of the distance from `from` when A at `to` makes a small motion m:
-//
-//   distance(from, to)^2 + 2 gradient.m + m^T hessian m
-//
-// with m = (v, w): the centre moves by v, and A turns about it by the rotation vector w, both in the axes of B. Write the gradient, exact, and the
-// Hessian, positive semidefinite, row-major; it may be rough, since every step is measured by `distance`. Both are 0 before the call.
+/// The square of the distance from `from` when A at `to` makes a small motion m:
+///
+///   distance(from, to)^2 + 2 gradient.m + m^T hessian m
+///
+/// with m = (v, w): the centre moves by v, and A turns about it by the rotation vector w, both in the axes of B. Write the gradient, exact, and the
+/// Hessian, positive semidefinite, row-major; it may be rough, since every step is measured by `distance`. Both are 0 before the call.
 typedef void (*qdist_mesh_own_model)(void *user,
                                      const qdist_mesh_pose *from,
                                      const qdist_mesh_pose *to,
                                      double *gradient,
                                      double *hessian);
 
-// A metric of yours. The bracket is true whatever the functions return, as far as `distance` does not change: with a poor model the
-// answer is poor. They are called hundreds of times in a query, and must not unwind, longjmp, or use the pair or tracker that is calling them.
+/// A metric of yours. The bracket is true whatever the functions return, as far as `distance` does not change: with a poor model the
+/// answer is poor. They are called hundreds of times in a query, and must not unwind, longjmp, or use the pair or tracker that is calling them.
 typedef struct {
-    // sizeof(qdist_mesh_own_metric).
+    /// sizeof(qdist_mesh_own_metric).
     uint32_t struct_size;
-    // What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
-    // for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.
+    /// What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
+    /// for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.
     qdist_mesh_metric at_least;
-    // What rotations are about, in A's frame; coordinates of at most 1e60.
+    /// What rotations are about, in A's frame; coordinates of at most 1e60.
     double centre[3];
-    // What makes an angle a length, e.g. A's radius of gyration; above 0.
+    /// What makes an angle a length, e.g. A's radius of gyration; above 0.
     double radius;
     qdist_mesh_own_distance distance;
     qdist_mesh_own_model model;
-    // For both.
+    /// For both.
     void *user;
 } qdist_mesh_own_metric;
 
-// The farthest that any point of A moves (DISP).
+/// The farthest that any point of A moves (DISP).
 #define QDIST_MESH_DISP 0
 
-// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
-// the options. With A's own mass never more than QDIST_MESH_DISP.
+/// The root mean square over the solid A of the lengths that its points move: the root of the object norm sigma. Needs a solid A, or `mass` of
+/// the options. With A's own mass never more than QDIST_MESH_DISP.
 #define QDIST_MESH_SIGMA 1
 
-// One of yours: `own` of the options.
+/// One of yours: `own` of the options.
 #define QDIST_MESH_OWN 2
 
 /* ============================================================ DEPTH ============================================================
@@ -303,128 +311,129 @@ typedef struct {
  * certainty, so the answer is a bracket: no free pose is nearer than `lower`, and `pose` is free, proved by the solid test, at the
  * distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify. */
 
-// How did a query end? Whatever it says, the bracket holds.
+/// How did a query end? Whatever it says, the bracket holds.
 typedef int32_t qdist_mesh_outcome;
 
-// How much is done for a depth?
+/// How much is done for a depth?
 typedef uint32_t qdist_mesh_effort;
 
-// How far a query is.
+/// How far a query is.
 typedef struct {
-    // The bracket so far; `upper` is DBL_MAX before the first free pose.
+    /// The bracket so far; `upper` is DBL_MAX before the first free pose.
     double lower;
     double upper;
-    // The pose that proves `upper`, once there is one; before, the query's.
+    /// The pose that proves `upper`, once there is one; before, the query's.
     qdist_mesh_pose pose;
-    // Share of the search that is done, 0 to 1.
+    /// Share of the search that is done, 0 to 1.
     double fraction;
-    // Collision, contact and distance queries so far.
+    /// Collision, contact and distance queries so far.
     uint64_t queries;
 } qdist_mesh_progress;
 
-// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far, after
-// some tens of queries at most that bring the best pose to contact. Draw a progress
-// bar, look at a clock, or at a flag that another thread sets (atomically).
-//
-// user: watch_user of the options. progress: valid during the call.
+/// Called several times a millisecond during a query; anything but 0 ends it with QDIST_MESH_INTERRUPTED and the bracket so far, after
+/// some tens of queries at most that bring the best pose to contact. Draw a progress
+/// bar, look at a clock, or at a flag that another thread sets (atomically).
+///
+/// user: watch_user of the options. progress: valid during the call.
 typedef int32_t (*qdist_mesh_watch)(void *user, const qdist_mesh_progress *progress);
 
-// What a query does. Begin with qdist_mesh_options_default.
+/// What a query does. Begin with qdist_mesh_options_default.
 typedef struct {
-    // sizeof(qdist_mesh_options).
+    /// sizeof(qdist_mesh_options).
     uint32_t struct_size;
-    // QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
+    /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
     qdist_mesh_metric metric;
-    // QDIST_MESH_FAST, QDIST_MESH_DEFAULT (default) or QDIST_MESH_HEAVY.
+    /// QDIST_MESH_FAST, QDIST_MESH_DEFAULT (default) or QDIST_MESH_HEAVY.
     qdist_mesh_effort effort;
-    // Number of `poses`; default 0.
+    /// Number of `poses`; default 0.
     uint32_t pose_count;
-    // Number of the random sequence; default 0. The same query with the same seed gives the same answer, to the last digit.
+    /// Number of the random sequence; default 0. The same query with the same seed gives the same answer, to the last digit.
     uint64_t seed;
-    // The query ends after this many collision, contact and distance queries, but for some tens to bring the best pose to contact; default
-    // UINT64_MAX. Queries take some microseconds each.
+    /// The query ends after this many collision, contact and distance queries, but for some tens to bring the best pose to contact; default
+    /// UINT64_MAX. Queries take some microseconds each.
     uint64_t max_queries;
-    // The query ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
+    /// The query ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     double relative;
-    // Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess. NULL if pose_count is 0.
+    /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess. NULL if pose_count is 0.
     const qdist_mesh_pose *poses;
-    // QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
-    // then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
+    /// QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
+    /// then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
     const qdist_mesh_mass *mass;
-    // QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
     const qdist_mesh_own_metric *own;
-    // NULL (default): nothing is called.
+    /// NULL (default): nothing is called.
     qdist_mesh_watch watch;
-    // For `watch`.
+    /// For `watch`.
     void *watch_user;
 } qdist_mesh_options;
 
-// An answer: lower <= depth <= upper.
+/// An answer: lower <= depth <= upper.
 typedef struct {
-    // sizeof(qdist_mesh_depth); set it before the call.
+    /// sizeof(qdist_mesh_depth); set it before the call.
     uint32_t struct_size;
-    // How the query ended, e.g. QDIST_MESH_CONVERGED.
+    /// How the query ended, e.g. QDIST_MESH_CONVERGED.
     qdist_mesh_outcome outcome;
-    // No free pose is nearer than this.
+    /// No free pose is nearer than this.
     double lower;
-    // The metric's distance between the query's pose and `pose`.
+    /// The metric's distance between the query's pose and `pose`.
     double upper;
-    // A free pose, in the frame of B; the query's own when it is free, or with QDIST_MESH_STUCK and QDIST_MESH_INVALID.
+    /// A free pose, in the frame of B; the query's own when it is free, or with QDIST_MESH_STUCK and QDIST_MESH_INVALID.
     qdist_mesh_pose pose;
-    // QDIST_MESH_SEPARATED: the distance of the surfaces. Else 0.
+    /// QDIST_MESH_SEPARATED: the distance of the surfaces. Else 0.
     qdist_mesh_distance distance;
-    // 1 if an inside was seen, since A or B is a solid; 0 if the depth is that of surfaces.
+    /// 1 if an inside was seen, since A or B is a solid; 0 if the depth is that of surfaces.
     uint32_t solid;
-    // Walks along the boundary of the free space that were made.
+    /// Walks along the boundary of the free space that were made.
     uint32_t walks;
-    // Collision queries that it took.
+    /// Collision queries that it took.
     uint64_t collision_queries;
-    // Contact queries that it took.
+    /// Contact queries that it took.
     uint64_t contact_queries;
-    // Distance queries that it took.
+    /// Distance queries that it took.
     uint64_t distance_queries;
 } qdist_mesh_depth;
 
-// A few seeds: an upper bound at once.
+/// A few seeds: an upper bound at once.
 #define QDIST_MESH_FAST 0
 
-// What finds nearly all minima.
+/// What finds nearly all minima.
 #define QDIST_MESH_DEFAULT 1
 
-// Several times as much, and a lower bound with care.
+/// Several times as much, and a lower bound with care.
 #define QDIST_MESH_HEAVY 2
 
-// The bracket is as narrow as asked for.
+/// The bracket is as narrow as asked for.
 #define QDIST_MESH_CONVERGED 0
 
-// All that the effort or the tick's budget provides for was done, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
+/// All that the effort or the tick's budget provides for was done, and the bracket is wider than asked for. So end most queries of bodies that are not convex.
 #define QDIST_MESH_BOUNDED 1
 
-// The bodies do not overlap: both bounds are 0, and `distance` is filled.
+/// The bodies do not overlap: both bounds are 0, and `distance` is filled.
 #define QDIST_MESH_SEPARATED 2
 
-// `watch` of the options said so.
+/// `watch` of the options said so.
 #define QDIST_MESH_INTERRUPTED 3
 
-// The number of queries is used up.
+/// The number of queries is used up.
 #define QDIST_MESH_BUDGET 4
 
-// No free pose was found: `upper` is DBL_MAX, and `pose` is the query's.
+/// No free pose was found: `upper` is DBL_MAX, and `pose` is the query's.
 #define QDIST_MESH_STUCK 5
 
-// Sizes so extreme, or a metric of yours such, that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
+/// Sizes so extreme, or a metric of yours such, that the metric is no number: `lower` is 0, `upper` is DBL_MAX, and `pose` is the query's.
 #define QDIST_MESH_INVALID 6
 
-// The name of an outcome, e.g. "separated". A static string, never NULL.
-const char *qdist_mesh_outcome_string(qdist_mesh_outcome outcome);
+/// The name of an outcome, e.g. "separated". A static string, never NULL.
+QDIST_API const char *qdist_mesh_outcome_string(qdist_mesh_outcome outcome);
 
-// Writes the defaults, struct_size included.
-qdist_status qdist_mesh_options_default(qdist_mesh_options *options);
+/// Writes the defaults, struct_size included.
+QDIST_API qdist_status qdist_mesh_options_default(qdist_mesh_options *options);
 
-// The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
-//
-// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
-// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
+/// The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
+///
+/// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
+/// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
+QDIST_API
 qdist_status qdist_mesh_pair_depth(qdist_mesh_pair *pair,
                                    const qdist_mesh_pose *pose,
                                    const qdist_mesh_options *options,
@@ -449,69 +458,74 @@ qdist_status qdist_mesh_pair_depth(qdist_mesh_pair *pair,
  * It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
  * qdist_mesh_pair_contacts of another pair of the same meshes. */
 
-// A tracker: opaque.
+/// A tracker: opaque.
 typedef struct qdist_mesh_tracker qdist_mesh_tracker;
 
-// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
-// cancel, at a flag that another thread sets (atomically).
-//
-// user: late_user of the budget.
+/// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
+/// cancel, at a flag that another thread sets (atomically).
+///
+/// user: late_user of the budget.
 typedef int32_t (*qdist_mesh_late)(void *user);
 
-// What a tick may cost, and by which metric it measures. Begin with qdist_mesh_budget_default.
+/// What a tick may cost, and by which metric it measures. Begin with qdist_mesh_budget_default.
 typedef struct {
-    // sizeof(qdist_mesh_budget).
+    /// sizeof(qdist_mesh_budget).
     uint32_t struct_size;
-    // QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
+    /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
     qdist_mesh_metric metric;
-    // Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, up to 6 more.
+    /// Collision, contact and distance queries, default 16; the pose itself is always tested. Where no free pose is known, up to 6 more.
     uint64_t max_queries;
-    // The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
+    /// The tick ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     double relative;
-    // Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
+    /// Tests at random poses that are nearer than the best, by which the tracker leaves its valley; default 4.
     uint32_t probes;
-    // 1 (default): lower bounds are renewed when there is none or a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
+    /// 1 (default): lower bounds are renewed when there is none or a tenth of the depth has been lost. 0: they are not, and are 0 in the end.
     uint32_t certify;
-    // With how much effort; default QDIST_MESH_FAST.
+    /// With how much effort; default QDIST_MESH_FAST.
     qdist_mesh_effort effort;
-    // QDIST_MESH_SIGMA: as `mass` of qdist_mesh_options. NULL (default): A's own.
+    /// QDIST_MESH_SIGMA: as `mass` of qdist_mesh_options. NULL (default): A's own.
     const qdist_mesh_mass *mass;
-    // QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
+    /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
     const qdist_mesh_own_metric *own;
-    // NULL (default): there is no clock.
+    /// NULL (default): there is no clock.
     qdist_mesh_late late;
-    // For `late`.
+    /// For `late`.
     void *late_user;
 } qdist_mesh_budget;
 
-// Writes the defaults, struct_size included.
-qdist_status qdist_mesh_budget_default(qdist_mesh_budget *budget);
+/// Writes the defaults, struct_size included.
+QDIST_API qdist_status qdist_mesh_budget_default(qdist_mesh_budget *budget);
 
-// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
-qdist_status qdist_mesh_tracker_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_tracker **tracker);
+/// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
+QDIST_API
+qdist_status qdist_mesh_tracker_create(const qdist_mesh *a,
+                                       const qdist_mesh *b,
+                                       qdist_mesh_tracker **tracker);
 
-// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
-void qdist_mesh_tracker_free(qdist_mesh_tracker *tracker);
+/// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
+QDIST_API void qdist_mesh_tracker_free(qdist_mesh_tracker *tracker);
 
-// A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
-// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
-// error the tracker is as before.
-// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+/// A tick: the depth of A at a pose. budget: NULL for the defaults. The bracket is true however little was allowed; `distance` of a separated pose is
+/// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
+/// error the tracker is as before.
+/// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+QDIST_API
 qdist_status qdist_mesh_tracker_update(qdist_mesh_tracker *tracker,
                                        const qdist_mesh_pose *pose,
                                        const qdist_mesh_budget *budget,
                                        qdist_mesh_depth *depth);
 
-// Takes over the pose of an answer from elsewhere, whatever pose it was the answer for: qdist_mesh_pair_depth of another thread, say. Only
-// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
-//
-// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+/// Takes over the pose of an answer from elsewhere, whatever pose it was the answer for: qdist_mesh_pair_depth of another thread, say. Only
+/// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
+///
+/// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+QDIST_API
 qdist_status qdist_mesh_tracker_merge(qdist_mesh_tracker *tracker,
                                       const qdist_mesh_depth *answer,
                                       uint32_t *taken);
 
-// Forgets everything: the next tick is the first.
-qdist_status qdist_mesh_tracker_reset(qdist_mesh_tracker *tracker);
+/// Forgets everything: the next tick is the first.
+QDIST_API qdist_status qdist_mesh_tracker_reset(qdist_mesh_tracker *tracker);
 
 #ifdef __cplusplus
 }

@@ -12,6 +12,9 @@ if ! cbindgen --version 2>/dev/null | grep -qF "cbindgen $version"; then
     cargo install --quiet --locked cbindgen --version "=$version"
 fi
 
+# The most functions that the headers may have together.
+most=170
+
 # Functions of the chapter $2 with the settings $1. A file by itself refers to types of other files: those warnings are left out;
 # the C compiler checks the whole.
 chapter() {
@@ -25,7 +28,9 @@ chapter() {
         }
         suffix == "" { text = text "\n *" ($0 == "" ? "" : " " $0) }
         END { print text " */\n" }'
-    cbindgen --config "$1" "$2" 2>"$out.warnings" || { cat "$out.warnings" >&2; exit 1; }
+    # Checked arguments are pointers (capi/src/pointer.rs).
+    sed 's/\bIn<\([^<>]*\)>/*const \1/g; s/\bOut<\([^<>]*\)>/*mut \1/g' "$2" >"$dir/plain.rs"
+    cbindgen --config "$1" "$dir/plain.rs" 2>"$out.warnings" || { cat "$out.warnings" >&2; exit 1; }
     grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skip(ping)? .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
@@ -43,10 +48,16 @@ header() {
 }
 
 { echo 'documentation = false'; cat cbindgen.toml; } >"$out.toml"
-header capi/src/prelude.h "status version symmetry" "solver sets shapes points join half_space combine unit_sets query plane span warm" |
+header capi/src/prelude.h "status version workspace symmetry" "solver sets shapes points join half_space combine unit_sets query plane span warm" |
     cat -s >"$out"
-header capi/src/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized" | cat -s >"$out.grasp"
+header capi/src/grasp_prelude.h grasp "grasp/contacts grasp/wrenches grasp/quality grasp/forces grasp/gradients grasp/fingers grasp/linearized grasp/pyramids" | cat -s >"$out.grasp"
 header capi/src/mesh_prelude.h "mesh/allocator mesh/model mesh/pair mesh/metric mesh/depth mesh/tracker" "" | cat -s >"$out.mesh"
+
+count=$(cat "$out" "$out.grasp" "$out.mesh" | grep -c '^QDIST_API')
+if [ "$count" -gt $most ]; then
+    echo "the headers have $count functions, more than $most: what is no interface is not exported" >&2
+    exit 1
+fi
 
 # $1: what was written, $2: the header.
 install() {

@@ -58,7 +58,7 @@ qdist_status box_depth(qdist_solver *solver, const qdist_box_SUFFIX *a, const qd
 C
     "$cc" -O2 -ffunction-sections -ffreestanding -Iinclude -c "$target/box_$1.c" -o "$target/box_$1.o"
     # shellcheck disable=SC2086
-    ld --gc-sections -e box_depth -u "qdist_solver_init3_$1" $memory -o "$target/box_$1" "$target/box_$1.o" "$lib"
+    ld --gc-sections -e box_depth -u "qdist_solver_init_$1" $memory -o "$target/box_$1" "$target/box_$1.o" "$lib"
 }
 box_program f32
 size "$target/box_f32" | awk 'NR == 2 { printf "  boxes, 3-D, float: text %d, data %d, bss %d\n", $1, $2, $3 }'
@@ -66,7 +66,7 @@ size "$target/box_f32" | awk 'NR == 2 { printf "  boxes, 3-D, float: text %d, da
 for plan in conewise rays shoot warm span; do
     nm -C "$target/all" | grep -E ' [tT] ' | grep -q "$plan" || { echo "purity: no symbol is named $plan" >&2; exit 1; }
 done
-foreign=$(nm -C "$target/box_f32" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|_unit_|half_space|join|sectors|arcs|init[2456]|solve[2-6]|rays|shoot|warm|span' || true)
+foreign=$(nm -C "$target/box_f32" | grep -E ' [tT] ' | grep -E '_f64|ellipsoid|cone|cylinder|capsule|points|hull|_unit_|half_space|join|sectors|arcs|solve[2-6]|rays|shoot|warm|span' || true)
 if [ -n "$foreign" ]; then
     echo "purity: a program of boxes contains what it does not use:" >&2
     echo "$foreign" >&2

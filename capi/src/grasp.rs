@@ -2,6 +2,7 @@
 //!
 //! Small numbers with names, for both scalars.
 
+use super::pointer::Out;
 use super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CAPACITY, QDIST_ERROR_CONTACT_CAP, QDIST_ERROR_CONTACT_FRICTION,
     QDIST_ERROR_CONTACT_JACOBIAN, QDIST_ERROR_CONTACT_NORMAL, QDIST_ERROR_CONTACT_POSITION,
@@ -191,13 +192,27 @@ pub(super) fn from_contact(error: ContactError) -> qdist_status {
 }
 
 /// The status of an error in a list, after telling which contact it was.
-///
-/// # Safety
-/// `which` is NULL, or aligned and valid for writes.
-pub(super) unsafe fn from_grasp(error: GraspError, which: *mut u32) -> qdist_status {
+pub(super) fn from_grasp(error: GraspError, which: &Out<u32>) -> qdist_status {
     if !which.is_null() {
-        // SAFETY: the caller's promise.
-        unsafe { which.write(error.contact as u32) };
+        // (Aligned: looked at before.)
+        which.put(error.contact as u32).ok();
     }
     from_contact(error.error)
+}
+
+/// Makes something of each contact of a list, and writes it. All are made once before the first is written.
+pub(super) fn all_of<C, M>(
+    contacts: &[C],
+    which: &Out<u32>,
+    make: impl Fn(usize, &C) -> Result<M, ContactError>,
+    write: impl Fn(usize, M) -> Check,
+) -> Check {
+    let refuse = |contact: usize, error| from_grasp(GraspError { contact, error }, which);
+    for (index, contact) in contacts.iter().enumerate() {
+        make(index, contact).map_err(|error| refuse(index, error))?;
+    }
+    for (index, contact) in contacts.iter().enumerate() {
+        write(index, make(index, contact).map_err(|error| refuse(index, error))?)?;
+    }
+    Ok(())
 }

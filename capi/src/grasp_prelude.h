@@ -11,9 +11,9 @@
  *     uint32_t which;
  *
  *     for (int i = 0; i < 2; i++) contacts[i].friction = QDIST_SOFT, contacts[i].mu = 0.5, contacts[i].mus = 0.01;
- *     qdist_passive_primitives_f64(contacts, 2, &frame, primitives, &which);
+ *     qdist_primitives_f64(contacts, 2, &frame, 0, 0, primitives, &which);
  *     qdist_set_wrenches_f64(&set, &wrenches);
- *     qdist_solver_init6_f64(memory, sizeof memory, 64, 2048, &solver);
+ *     qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver);
  *     result.struct_size = sizeof result;
  *     qdist_solve6_f64(solver, &set, NULL, NULL, &result);
  *     ... result.lower <= d <= result.upper; result.direction is the grasp's weakest ...

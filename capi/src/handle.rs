@@ -4,7 +4,7 @@
 //!
 //! While a call runs, the header's tag is another one: a callback that would use the solver that is calling it meets that, and an error.
 
-use super::generic::{aligned, not_null};
+use super::pointer::Out;
 use super::status::{
     Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_BUSY, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
     QDIST_ERROR_WORKSPACE_SIZE, from_workspace,
@@ -18,6 +18,7 @@ use qdist::internal;
 
 /// A solver: opaque, in the caller's memory.
 #[repr(C, align(8))]
+#[derive(Clone, Copy)]
 pub struct qdist_solver {
     magic: u32,
     /// Size of the scalar.
@@ -62,45 +63,71 @@ const _: () = {
     assert!(keeps::<f32, 2>() && keeps::<f32, 3>() && keeps::<f32, 4>() && keeps::<f32, 5>() && keeps::<f32, 6>());
 };
 
-/// Header and block, in bytes.
-pub(super) fn bytes<T: Real, const N: usize>(max_vertices: u32, max_facets: u32) -> Check<u32> {
-    let layout = layout::<T, N>(max_vertices, max_facets)?;
-    u32::try_from(HEADER + layout.bytes()).map_err(|_| QDIST_ERROR_WORKSPACE_SIZE)
-}
-
 fn layout<T: Real, const N: usize>(max_vertices: u32, max_facets: u32) -> Check<Layout> {
     Layout::new::<T, N>(max_vertices as usize, max_facets as usize).map_err(from_workspace)
 }
 
+fn layout_of<T: Real>(dimension: u32, max_vertices: u32, max_facets: u32) -> Check<Layout> {
+    match dimension {
+        2 => layout::<T, 2>(max_vertices, max_facets),
+        3 => layout::<T, 3>(max_vertices, max_facets),
+        4 => layout::<T, 4>(max_vertices, max_facets),
+        5 => layout::<T, 5>(max_vertices, max_facets),
+        6 => layout::<T, 6>(max_vertices, max_facets),
+        _ => Err(QDIST_ERROR_DIMENSION),
+    }
+}
+
+/// Header and block, in bytes.
+pub(super) fn query<T: Real>(dimension: u32, max_vertices: u32, max_facets: u32, bytes: Out<u32>) -> Check {
+    bytes.checked()?;
+    let layout = layout_of::<T>(dimension, max_vertices, max_facets)?;
+    bytes.put(u32::try_from(HEADER + layout.bytes()).map_err(|_| QDIST_ERROR_WORKSPACE_SIZE)?)
+}
+
 /// Makes a solver.
-///
-/// # Safety
-/// `memory` is NULL or valid for writes of `length` bytes and used for nothing else; `solver` is NULL or valid for writes.
-pub(super) unsafe fn init<T: Real, const N: usize>(
-    memory: *mut c_void,
+pub(super) fn init<T: Real>(
+    memory: Out<c_void>,
     length: u32,
+    dimension: u32,
     max_vertices: u32,
     max_facets: u32,
-    solver: *mut *mut qdist_solver,
+    solver: Out<*mut qdist_solver>,
 ) -> Check {
-    not_null(memory)?;
-    aligned(solver)?;
-    let layout = layout::<T, N>(max_vertices, max_facets)?;
+    memory.checked()?;
+    solver.checked()?;
+    let layout = layout_of::<T>(dimension, max_vertices, max_facets)?;
     if (length as usize) < HEADER + layout.bytes() {
         return Err(QDIST_ERROR_WORKSPACE_SIZE);
     }
-    let handle = memory.cast::<qdist_solver>();
+    let handle = memory.address().cast::<qdist_solver>();
     if !handle.is_aligned() {
         return Err(QDIST_ERROR_ALIGNMENT);
     }
     let scalar = size_of::<T>() as u16;
-    // SAFETY: aligned, and long enough for header and block.
+    // SAFETY: aligned, and the header: long enough for header and block, and used for nothing else.
     unsafe {
-        internal::initialize::<T, N>(memory.cast::<u8>().add(HEADER), &layout);
-        handle.write(qdist_solver { magic: MAGIC, scalar, dimension: N as u16, max_vertices, max_facets });
-        solver.write(handle);
+        let block = handle.cast::<u8>().add(HEADER);
+        match dimension {
+            2 => internal::initialize::<T, 2>(block, &layout),
+            3 => internal::initialize::<T, 3>(block, &layout),
+            4 => internal::initialize::<T, 4>(block, &layout),
+            5 => internal::initialize::<T, 5>(block, &layout),
+            _ => internal::initialize::<T, 6>(block, &layout),
+        }
+        handle.write(qdist_solver { magic: MAGIC, scalar, dimension: dimension as u16, max_vertices, max_facets });
     }
-    Ok(())
+    solver.put(handle)
+}
+
+/// The dimension of a solver that may be opened.
+pub(super) fn dimension(solver: &Out<qdist_solver>) -> Check<u16> {
+    let header = solver.get()?;
+    match header.magic {
+        MAGIC if (2..=6).contains(&header.dimension) => Ok(header.dimension),
+        BUSY => Err(QDIST_ERROR_BUSY),
+        _ => Err(QDIST_ERROR_SOLVER),
+    }
 }
 
 /// A solver that is open for one call, at the end of which it is no longer busy.
@@ -133,15 +160,9 @@ impl<T, const N: usize> Drop for Opened<'_, T, N> {
 }
 
 /// Opens a solver for one call. Constant time.
-///
-/// # Safety
-/// `solver` is NULL or valid for reads and writes of a header; if it was made by [`init`], its memory is unchanged since and
-/// not in use by a call of another thread for the life `'w`.
 #[inline]
-pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver) -> Check<Opened<'w, T, N>> {
-    aligned(solver)?;
-    // SAFETY: aligned, and readable as the caller promises.
-    let header = unsafe { solver.read() };
+pub(super) fn open<T: Real, const N: usize>(solver: &Out<qdist_solver>) -> Check<Opened<'_, T, N>> {
+    let header = *solver.get()?;
     if header.magic == BUSY {
         return Err(QDIST_ERROR_BUSY);
     }
@@ -155,9 +176,11 @@ pub(super) unsafe fn open<'w, T: Real, const N: usize>(solver: *mut qdist_solver
         return Err(QDIST_ERROR_DIMENSION);
     }
     let layout = layout::<T, N>(header.max_vertices, header.max_facets).map_err(|_| QDIST_ERROR_SOLVER)?;
-    // SAFETY: the header says that `init` wrote a block of this layout behind it.
+    let header = solver.address();
+    // SAFETY: the header says that `init` wrote a block of this layout behind it, and C promises that it is unchanged since and not in use by
+    // another thread.
     unsafe {
-        (&raw mut (*solver).magic).write(BUSY);
-        Ok(Opened { solver: internal::open(solver.cast::<u8>().add(HEADER), &layout), header: solver })
+        (&raw mut (*header).magic).write(BUSY);
+        Ok(Opened { solver: internal::open(header.cast::<u8>().add(HEADER), &layout), header })
     }
 }

@@ -1,36 +1,47 @@
 //! The C ABI of qdist: `include/qdist.h`, `qdist_grasp.h` and `qdist_mesh.h`, generated from this crate by `make header`.
 //!
-//! * [`status`], [`symmetry`], [`version`]: codes and their names, and callbacks without a scalar.
+//! * [`status`], [`symmetry`], [`version`], [`workspace`]: codes and their names, and callbacks without a scalar.
 //! * [`handle`]: a solver in the caller's memory.
 //! * `grasp` (feature): codes of the second header, `include/qdist_grasp.h`, whose structs and functions are in `f64::grasp`.
 //! * `mesh` (feature): the third header, `include/qdist_mesh.h`, of a library that needs `std`.
-//! * [`generic`]: what the entry points of both scalars share. Checked pointers, callbacks as a
-//!   [`Support`](qdist::support::Support) and a [`UnitSet`](qdist::qset::Unit set), and loops over run-time dimensions.
-//! * [`f64`](mod@f64): the structs and functions with suffix `_f64`, written by hand, since the header generator does not
-//!   expand macros. [`f32`](mod@f32): the same with `_f32`, made of it by `build.rs`.
+//! * [`pointer`]: pointers of the caller as types, `In` and `Out`. [`callback`]: the caller's functions. [`numbers`]: checks, and loops over
+//!   run-time dimensions.
+//! * [`f64`](mod@f64): the structs and functions with suffix `_f64`. [`f32`](mod@f32): the same with `_f32`, made of their text by `build.rs`.
 //! * `panic` (feature): what the freestanding library does about a panic, which cannot happen.
 //!
-//! Nothing here switches between dimensions, shapes or scalars at run time where that would link code which a program does
-//! not use: each entry point names all three.
+//! Why text, and not structs and functions that are generic in the scalar: C sees names, and the generator of the header sees no macros, so that
+//! every function would be written out for each scalar all the same, with a generic body behind it. The text is shorter, reads without type
+//! parameters, and what is behind a function of C is one function away. What does not name a struct of the header is generic, and exists once.
 //!
-//! The functions are `unsafe` to call from Rust; the header states what C callers promise, once for all of them.
+//! A pointer is checked where it comes in, and is a reference from there on. So exported functions are safe code, and `unsafe` stands in [`pointer`],
+//! [`callback`] and [`handle`], where a struct of the header is behind a `user` ([`f64::answers`]), and in a few lines elsewhere, each with the
+//! fact that makes it right. (The compiler's lint `unsafe_code` also refuses names for C, which every chapter has; so a test looks, `house`.)
+//!
+//! Nothing here switches between dimensions, shapes or scalars at run time where that would link much code which a program does not use: nearly
+//! every entry point names all three.
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 // The comments are the header's text, where brackets are not links.
 #![allow(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
 // Fields whose name says all need no comment in the header.
 #![allow(missing_docs)]
-#![allow(non_camel_case_types, clippy::missing_safety_doc, clippy::neg_cmp_op_on_partial_ord)]
+#![allow(non_camel_case_types)]
+#![deny(clippy::undocumented_unsafe_blocks)]
 
 include!(concat!(env!("OUT_DIR"), "/f32.rs"));
+mod callback;
 pub mod f64;
-mod generic;
 #[cfg(feature = "grasp")]
 pub mod grasp;
 pub mod handle;
+#[cfg(test)]
+mod house;
 #[cfg(feature = "mesh")]
 pub mod mesh;
+mod numbers;
 #[cfg(all(feature = "panic-handler", not(feature = "std"), not(test), panic = "abort"))]
 mod panic;
+mod pointer;
 pub mod status;
 pub mod symmetry;
 pub mod version;
+pub mod workspace;

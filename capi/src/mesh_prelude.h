@@ -9,7 +9,7 @@
  *     qdist_mesh_depth depth;
  *     uint32_t which;
  *
- *     qdist_mesh_create(xyz, 4, triangles, 4, &which, &mesh);
+ *     qdist_mesh_create(xyz, 4, triangles, 4, &mesh, &which);
  *     qdist_mesh_certify(mesh, &body);      a second mesh, with what lower bounds come from; of meshes without, `lower` is 0
  *     qdist_mesh_pair_create(body, body, &pair);
  *     depth.struct_size = sizeof depth;

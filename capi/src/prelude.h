@@ -10,7 +10,7 @@
  *     qdist_body_f64 a, b;
  *     qdist_depth_f64 depth;
  *
- *     qdist_solver_init3_f64(memory, sizeof memory, 64, 128, &solver);
+ *     qdist_solver_init_f64(memory, sizeof memory, 3, 64, 128, &solver);
  *     qdist_body_box_f64(&a, &box);
  *     qdist_body_sphere_f64(&b, &ball);
  *     b.translation[0] = 1.25;
@@ -27,6 +27,8 @@
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
+ * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
+ *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
@@ -48,7 +50,8 @@
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).
  * Frames      Right-handed. A body's pose takes points from its own frame to the world: x -> rotation * x + translation. All
  *             results are in the world frame.
- * Versions    Structs that may grow begin with struct_size, set by you to sizeof. Numbers of this header never change their
+ * Versions    Structs that may grow begin with struct_size, set by you to sizeof: a library of a later version takes those of an earlier header,
+ *             which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
  *             meaning; new ones may be added, so that unknown ones must be expected. */
 
 #ifndef QDIST_H
@@ -58,6 +61,20 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Before every function. Define QDIST_API yourself for an attribute of your own; or QDIST_DLL where you link a DLL that you have made of the
+ * library on Windows, and QDIST_DLL_EXPORT while you make it. */
+#ifndef QDIST_API
+#if defined(_WIN32) && defined(QDIST_DLL_EXPORT)
+#define QDIST_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(QDIST_DLL)
+#define QDIST_API __declspec(dllimport)
+#elif defined(__GNUC__) && !defined(_WIN32)
+#define QDIST_API __attribute__((visibility("default")))
+#else
+#define QDIST_API
+#endif
+#endif
 
 #ifdef __cplusplus
 extern "C" {

@@ -84,7 +84,7 @@ pub const QDIST_ERROR_INTERNAL: qdist_status = 31;
 pub const QDIST_ERROR_BUSY: qdist_status = 32;
 /// A half space where only sets with an end serve: in a join, or in a query of one set (as callback_code).
 pub const QDIST_ERROR_UNBOUNDED: qdist_status = 33;
-/// `interrupt` of qdist_hull_prepare_until or qdist_hull_large_prepare said so.
+/// `interrupt` of qdist_hull_prepare or qdist_hull_large_prepare said so.
 pub const QDIST_ERROR_INTERRUPTED: qdist_status = 34;
 /// A hull of more points, or with more vertices, than the words of its graph can number: see QDIST_HULL_POINTS.
 pub const QDIST_ERROR_HULL_POINTS: qdist_status = 35;

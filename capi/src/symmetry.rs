@@ -29,3 +29,13 @@ pub type qdist_unbounded = Option<
 
 /// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
 pub type qdist_turning = Option<unsafe extern "C" fn()>;
+
+/// The mirror function of sets that are symmetric in every coordinate.
+pub(super) unsafe extern "C" fn mirrored_always(_user: *mut c_void, _signs: u32) -> i32 {
+    1
+}
+
+/// The mirror function of solids of revolution.
+pub(super) unsafe extern "C" fn mirrored_sideways(_user: *mut c_void, signs: u32) -> i32 {
+    i32::from(signs & 4 == 0)
+}

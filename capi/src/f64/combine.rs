@@ -3,23 +3,19 @@
 //! Sum, difference, convex hull of the union, and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
 //! set that is made of them.
 
-use super::super::generic::{
-    MAX_DIMENSION, SupportFn, aligned, array, coordinates, dimension, dot, first, flag, in_range, is_mirrored, length,
-    lengths, put, shared, tiny,
-};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status,
-};
-use super::sets::{qdist_set_f64, room};
-use core::ffi::c_void;
+use super::super::numbers::{MAX_DIMENSION, coordinates, dimension, dot, first, in_range, length, lengths, tiny};
+use super::super::pointer::{In, Out};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
+use super::answers::{AnswersAny, mirrored_any, support_any};
+use super::sets::qdist_set_f64;
 use qdist::Real;
 
 /// Two sets of the same dimension.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_pair_f64 {
-    pub a: *const qdist_set_f64,
-    pub b: *const qdist_set_f64,
+    pub a: In<qdist_set_f64>,
+    pub b: In<qdist_set_f64>,
     /// 2 to 6.
     pub dimension: u32,
 }
@@ -29,9 +25,9 @@ pub struct qdist_pair_f64 {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_linear_f64 {
-    pub set: *const qdist_set_f64,
+    pub set: In<qdist_set_f64>,
     /// Row-major, `rows` x `columns`; any matrix.
-    pub matrix: *const f64,
+    pub matrix: In<f64>,
     /// The first `rows` numbers count.
     pub translation: [f64; 6],
     /// Dimension of the image, 2 to 6.
@@ -42,346 +38,203 @@ pub struct qdist_linear_f64 {
 
 /// Makes the Minkowski sum { x + y : x in a, y in b }.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_sum_f64(set: *mut qdist_set_f64, pair: *const qdist_pair_f64) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { fill_pair(set, pair, qdist_sum_support_f64, qdist_sum_exhaustive_f64) })
+pub extern "C" fn qdist_set_sum_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
+    status(fill_pair::<false>(set, pair))
 }
 
 /// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_difference_f64(
-    set: *mut qdist_set_f64,
-    pair: *const qdist_pair_f64,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { fill_pair(set, pair, qdist_difference_support_f64, qdist_difference_exhaustive_f64) })
+pub extern "C" fn qdist_set_difference_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
+    status(fill_pair::<true>(set, pair))
 }
 
 /// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
 /// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_join_f64(set: *mut qdist_set_f64, pair: *const qdist_pair_f64) -> qdist_status {
-    let fill = || {
-        aligned(set)?;
-        // SAFETY: what the header asks of the caller.
-        let (a, b, n) = unsafe { parts(pair) }?;
-        if !(a.extent > 0.0 && b.extent > 0.0) {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let radius = a.radius.at_most(b.radius);
-        let (beyond_a, beyond_b) = (a.radius - radius, b.radius - radius);
-        let (beyond, extent) = (beyond_a + beyond_b, (a.extent + beyond_a).at_least(b.extent + beyond_b) * 1.000001);
-        // As derived for `support::Join`.
-        let put_on = if beyond > 0.0 { f64::count(n / 2 + 5) * beyond + extent } else { 0.0 };
-        let rounding = (f64::count(n + 2) * (a.extent + b.extent + beyond) + put_on) * f64::ROUNDOFF;
-        let error = a.stated_error(n).at_least(b.stated_error(n));
-        let made = qdist_set_f64 {
-            support: Some(qdist_set_join_support_f64),
-            exhaustive: a.exhaustive.or(b.exhaustive).map(|_| qdist_set_join_exhaustive_f64 as SupportFn<f64>),
-            mirrored: a.mirrored.and(b.mirrored).and(Some(pair_mirrored)),
-            user: pair.cast_mut().cast(),
-            radius,
-            extent,
-            error: ((error + rounding) * 1.000001).at_least(tiny()),
-            dimension: n as u32,
-            contains_origin: (a.knows_origin(n) || b.knows_origin(n)).into(),
-        };
-        // SAFETY: checked.
-        unsafe { put(set, made) };
-        Ok(())
-    };
-    status(fill())
+pub extern "C" fn qdist_set_join_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
+    status(fill_join(set, pair))
 }
 
 /// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_linear_f64(set: *mut qdist_set_f64, map: *const qdist_linear_f64) -> qdist_status {
-    let fill = || {
-        aligned(set)?;
-        // SAFETY: what the header asks of the caller.
-        let (linear, inner, matrix) = unsafe {
-            let linear = shared(map)?;
-            (linear, part(linear.set, dimension(linear.columns)?)?, linear.matrix()?)
-        };
-        let n = dimension(linear.rows)?;
-        let shift = first(&linear.translation, n)?;
-        coordinates(matrix)?;
-        coordinates(shift)?;
-        let stretch = norm(matrix);
-        // Without an extent, the rounding of an ill-conditioned map could not be bounded.
-        if !(inner.extent > 0.0) {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
-        let own = inner.stated_error(linear.columns as usize);
-        let stays = shift.iter().all(|&x| x == 0.0) && inner.knows_origin(linear.columns as usize);
-        let shortcuts = inner.exhaustive.map(|_| qdist_linear_exhaustive_f64 as SupportFn<f64>);
-        // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
-        let error = length((stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001)?;
-        let made = qdist_set_f64 {
-            support: Some(qdist_linear_support_f64),
-            exhaustive: shortcuts,
-            mirrored: None,
-            user: map.cast_mut().cast(),
-            radius: 0.0,
-            extent: reach,
-            error,
-            dimension: linear.rows,
-            contains_origin: stays.into(),
-        };
-        // SAFETY: checked.
-        unsafe { put(set, made) };
-        Ok(())
-    };
-    status(fill())
-}
-
-/// Support function of a sum.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_sum_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_pair(user, direction, point, 1.0, false) })
-}
-
-/// The same, where a part has shortcuts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_sum_exhaustive_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_pair(user, direction, point, 1.0, true) })
-}
-
-/// Support function of a difference.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_difference_support_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_pair(user, direction, point, -1.0, false) })
-}
-
-/// The same, where a part has shortcuts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_difference_exhaustive_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_pair(user, direction, point, -1.0, true) })
-}
-
-/// Support function of a linear image.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_linear_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_linear(user, direction, point, false) })
-}
-
-/// The same, where the set has shortcuts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_linear_exhaustive_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_linear(user, direction, point, true) })
-}
-
-/// Support function of a join.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_join_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_join(user, direction, point, false) })
-}
-
-/// The same, where a part has shortcuts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_join_exhaustive_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { ask_join(user, direction, point, true) })
-}
-
-impl qdist_linear_f64 {
-    /// # Safety
-    /// If not NULL and aligned, `matrix` is valid for reads of all entries.
-    unsafe fn matrix<'a>(&self) -> Check<&'a [f64]> {
-        let length = dimension(self.rows)? * dimension(self.columns)?;
-        // SAFETY: the caller's promise.
-        unsafe { array(self.matrix, Some(length)) }
-    }
-}
-
-/// A part of a combination, for dimension `n`.
-///
-/// # Safety
-/// If not NULL and aligned, `set` is valid for reads.
-unsafe fn part<'a>(set: *const qdist_set_f64, n: usize) -> Check<&'a qdist_set_f64> {
-    // SAFETY: the caller's promise.
-    let set = unsafe { shared(set) }?;
-    set.support.ok_or(QDIST_ERROR_NULL)?;
-    lengths([set.radius, set.extent, set.error])?;
-    flag(set.contains_origin)?;
-    if set.dimension != 0 && set.dimension as usize != n { Err(QDIST_ERROR_DIMENSION) } else { Ok(set) }
-}
-
-/// Both sets of a pair, and their dimension.
-///
-/// # Safety
-/// Pointers that are neither NULL nor misaligned are valid for reads.
-unsafe fn parts<'a>(pair: *const qdist_pair_f64) -> Check<(&'a qdist_set_f64, &'a qdist_set_f64, usize)> {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let pair = shared(pair)?;
-        let n = dimension(pair.dimension)?;
-        Ok((part(pair.a, n)?, part(pair.b, n)?, n))
-    }
-}
-
-fn norm(v: &[f64]) -> f64 {
-    dot(v, v).root() * 1.000001
-}
-
-/// # Safety
-/// Pointers that are neither NULL nor misaligned are valid.
-unsafe fn fill_pair(
-    set: *mut qdist_set_f64,
-    pair: *const qdist_pair_f64,
-    support: SupportFn<f64>,
-    exhaustive: SupportFn<f64>,
-) -> Check {
-    aligned(set)?;
-    // SAFETY: the caller's promise.
-    let (a, b, n) = unsafe { parts(pair) }?;
-    let known = a.extent > 0.0 && b.extent > 0.0;
-    let extent = if known { (a.extent + b.extent) * 1.000001 } else { 0.0 };
-    let made = qdist_set_f64 {
-        support: Some(support),
-        exhaustive: a.exhaustive.or(b.exhaustive).map(|_| exhaustive),
-        mirrored: a.mirrored.and(b.mirrored).and(Some(pair_mirrored)),
-        user: pair.cast_mut().cast(),
-        radius: a.radius + b.radius,
-        extent,
-        error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
-        dimension: n as u32,
-        contains_origin: (a.knows_origin(n) && b.knows_origin(n)).into(),
-    };
-    // Sums of lengths that are legal may be too large.
-    lengths([made.radius, made.extent, made.error])?;
-    // SAFETY: checked.
-    unsafe { put(set, made) };
-    Ok(())
-}
-
-/// The mirror function of sums and differences: a change of sign that both parts allow.
-unsafe extern "C" fn pair_mirrored(user: *mut c_void, signs: u32) -> i32 {
-    let ask = || {
-        // SAFETY: what the header asks of the caller.
-        let (a, b) = unsafe {
-            let pair = shared(user.cast::<qdist_pair_f64>().cast_const())?;
-            (shared(pair.a)?, shared(pair.b)?)
-        };
-        // SAFETY: what the header asks of the caller.
-        let mirrored = |set: &qdist_set_f64| unsafe { is_mirrored(set.mirrored, set.user, signs as u8) };
-        Ok(mirrored(a) && mirrored(b))
-    };
-    let answer: Check<bool> = ask();
-    i32::from(answer.unwrap_or(false))
+pub extern "C" fn qdist_set_linear_f64(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> qdist_status {
+    status(fill_linear(set, map))
 }
 
 /// Asks a part for its point along `u`.
-///
-/// # Safety
-/// The set's functions work in dimension `u.len()`.
-unsafe fn ask(set: &qdist_set_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
+fn ask(set: &qdist_set_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
     let mut point = [f64::NAN; MAX_DIMENSION];
-    let slow = if exhaustive { set.exhaustive } else { None };
-    let function = slow.or(set.support).ok_or(QDIST_ERROR_NULL)?;
-    // SAFETY: the caller's promise; `point` has room for every dimension.
-    match unsafe { function(set.user, u.as_ptr(), point.as_mut_ptr()) } {
+    match set.ask(u, exhaustive, &mut point) {
         0 => Ok(point),
         code => Err(code),
     }
 }
 
-/// x + sign * y, with x along the direction in `a` and y along sign * direction in `b`.
-///
-/// # Safety
-/// Those of a support function.
-unsafe fn ask_pair(user: *mut c_void, direction: *const f64, point: *mut f64, sign: f64, exhaustive: bool) -> Check {
-    // SAFETY: what the header asks of the caller.
-    unsafe {
-        let pair = shared(user.cast::<qdist_pair_f64>().cast_const())?;
-        let n = dimension(pair.dimension)?;
-        let u = array(direction, Some(n))?;
-        room::<1>(point)?;
+/// At least |v|.
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).root() * 1.000001
+}
+
+// ------------------------------------------------------------------------------------------------- pairs
+
+impl qdist_pair_f64 {
+    /// Both sets, and their dimension.
+    fn checked(&self) -> Check<(&qdist_set_f64, &qdist_set_f64, usize)> {
+        let n = dimension(self.dimension)?;
+        let (a, b) = (self.a.get()?, self.b.get()?);
+        a.check(n)?;
+        b.check(n)?;
+        Ok((a, b, n))
+    }
+
+    /// Is it certain that a change of sign leaves both parts as they are?
+    fn mirrored(&self, signs: u8) -> bool {
+        let stays = |set: &In<qdist_set_f64>| set.get().is_ok_and(|set| set.is_mirrored(signs));
+        stays(&self.a) && stays(&self.b)
+    }
+
+    /// The set that is made of the pair by `A`, with sizes still to be filled in.
+    fn set<A: AnswersAny<Struct = Self>>(
+        pair: In<Self>,
+        a: &qdist_set_f64,
+        b: &qdist_set_f64,
+        n: usize,
+    ) -> qdist_set_f64 {
+        qdist_set_f64 {
+            support: Some(support_any::<A, false>),
+            exhaustive: if a.exhaustive.or(b.exhaustive).is_some() { Some(support_any::<A, true>) } else { None },
+            mirrored: if a.mirrored.and(b.mirrored).is_some() { Some(mirrored_any::<A>) } else { None },
+            user: pair.user(),
+            dimension: n as u32,
+            ..qdist_set_f64::NONE
+        }
+    }
+}
+
+/// Sum, or difference.
+struct Sum<const DIFFERENCE: bool>;
+
+impl<const DIFFERENCE: bool> AnswersAny for Sum<DIFFERENCE> {
+    type Struct = qdist_pair_f64;
+    fn dimension(pair: &qdist_pair_f64) -> Check<usize> {
+        dimension(pair.dimension)
+    }
+    /// x + sign * y, with x along the direction in `a` and y along sign * direction in `b`.
+    fn farthest(pair: &qdist_pair_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
+        let sign = if DIFFERENCE { -1.0 } else { 1.0 };
         let mut turned = [0.0; MAX_DIMENSION];
         for (to, &x) in turned.iter_mut().zip(u) {
             *to = sign * x;
         }
-        let x = ask(shared(pair.a)?, u, exhaustive)?;
-        let y = ask(shared(pair.b)?, first(&turned, n)?, exhaustive)?;
-        for (i, (x, y)) in x.iter().zip(&y).enumerate().take(n) {
-            point.add(i).write(x + sign * y);
+        let mut sum = ask(pair.a.get()?, u, exhaustive)?;
+        let y = ask(pair.b.get()?, first(&turned, u.len())?, exhaustive)?;
+        for (x, y) in sum.iter_mut().zip(&y) {
+            *x += sign * y;
         }
+        Ok(sum)
     }
-    Ok(())
+    fn mirrored(pair: &qdist_pair_f64, signs: u8) -> bool {
+        pair.mirrored(signs)
+    }
 }
 
-/// The farther of the points of `a` and `b`, the larger radius' excess put on.
-///
-/// # Safety
-/// Those of a support function.
-unsafe fn ask_join(user: *mut c_void, direction: *const f64, point: *mut f64, exhaustive: bool) -> Check {
-    // SAFETY: what the header asks of the caller.
-    let (a, b, u, mut x, mut y) = unsafe {
-        let pair = shared(user.cast::<qdist_pair_f64>().cast_const())?;
-        let u = array(direction, Some(dimension(pair.dimension)?))?;
-        room::<1>(point)?;
-        let (a, b) = (shared(pair.a)?, shared(pair.b)?);
-        (a, b, u, ask(a, u, exhaustive)?, ask(b, u, exhaustive)?)
+fn fill_pair<const DIFFERENCE: bool>(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> Check {
+    set.checked()?;
+    let (a, b, n) = pair.get()?.checked()?;
+    let known = a.extent > 0.0 && b.extent > 0.0;
+    let extent = if known { (a.extent + b.extent) * 1.000001 } else { 0.0 };
+    let made = qdist_set_f64 {
+        radius: a.radius + b.radius,
+        extent,
+        error: ((a.stated_error(n) + b.stated_error(n)) * 1.000001 + 2.0 * f64::ROUNDOFF * extent).max(tiny()),
+        contains_origin: (a.knows_origin(n) && b.knows_origin(n)).into(),
+        ..qdist_pair_f64::set::<Sum<DIFFERENCE>>(pair, a, b, n)
     };
-    let (mut store, mut other) = ([0.0; MAX_DIMENSION], [0.0; MAX_DIMENSION]);
-    let w = in_range(u, &mut store);
-    let excess = a.radius - b.radius;
-    if excess != 0.0 {
-        let larger = if excess > 0.0 { &mut x } else { &mut y };
-        let scale = excess.abs() / dot(w, w).root();
-        for (x, &w) in larger.iter_mut().zip(w) {
-            *x += scale * w;
-        }
-    }
-    let mut between = x;
-    for (x, y) in between.iter_mut().zip(&y) {
-        *x -= y;
-    }
-    let between = first(&between, u.len())?;
-    let farther = if between.iter().any(|x| !x.finite()) {
-        // What a part said must not get lost behind what the other one said.
-        between
-    } else if dot(w, in_range(between, &mut other)) >= 0.0 {
-        first(&x, u.len())?
-    } else {
-        first(&y, u.len())?
-    };
-    // SAFETY: `farther` and the caller's room have as many numbers as `u`.
-    unsafe { farther.as_ptr().copy_to(point, farther.len()) };
-    Ok(())
+    // Sums of lengths that are legal may be too large.
+    lengths([made.radius, made.extent, made.error])?;
+    set.put(made)
 }
 
-/// # Safety
-/// Those of a support function.
-unsafe fn ask_linear(user: *mut c_void, direction: *const f64, point: *mut f64, exhaustive: bool) -> Check {
-    // SAFETY: what the header asks of the caller.
-    unsafe {
-        let map = shared(user.cast::<qdist_linear_f64>().cast_const())?;
-        let matrix = map.matrix()?;
-        let (rows, columns) = (dimension(map.rows)?, dimension(map.columns)?);
-        let u = array(direction, Some(rows))?;
-        room::<1>(point)?;
-        let set = shared(map.set)?;
+struct Join;
+
+impl AnswersAny for Join {
+    type Struct = qdist_pair_f64;
+    fn dimension(pair: &qdist_pair_f64) -> Check<usize> {
+        dimension(pair.dimension)
+    }
+    /// The farther of the points of `a` and `b`, the larger radius' excess put on.
+    fn farthest(pair: &qdist_pair_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
+        let (a, b) = (pair.a.get()?, pair.b.get()?);
+        let (mut x, mut y) = (ask(a, u, exhaustive)?, ask(b, u, exhaustive)?);
+        let (mut store, mut other) = ([0.0; MAX_DIMENSION], [0.0; MAX_DIMENSION]);
+        let w = in_range(u, &mut store);
+        let excess = a.radius - b.radius;
+        if excess != 0.0 {
+            let larger = if excess > 0.0 { &mut x } else { &mut y };
+            let scale = excess.abs() / dot(w, w).root();
+            for (x, &w) in larger.iter_mut().zip(w) {
+                *x += scale * w;
+            }
+        }
+        let mut between = x;
+        for (x, y) in between.iter_mut().zip(&y) {
+            *x -= y;
+        }
+        let apart = first(&between, u.len())?;
+        if apart.iter().any(|x| !x.finite()) {
+            // What a part said must not get lost behind what the other one said.
+            Ok(between)
+        } else if dot(w, in_range(apart, &mut other)) >= 0.0 {
+            Ok(x)
+        } else {
+            Ok(y)
+        }
+    }
+    fn mirrored(pair: &qdist_pair_f64, signs: u8) -> bool {
+        pair.mirrored(signs)
+    }
+}
+
+fn fill_join(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> Check {
+    set.checked()?;
+    let (a, b, n) = pair.get()?.checked()?;
+    if !(a.extent > 0.0 && b.extent > 0.0) {
+        return Err(QDIST_ERROR_ARGUMENT);
+    }
+    let radius = a.radius.at_most(b.radius);
+    let (beyond_a, beyond_b) = (a.radius - radius, b.radius - radius);
+    let (beyond, extent) = (beyond_a + beyond_b, (a.extent + beyond_a).at_least(b.extent + beyond_b) * 1.000001);
+    // As derived for `support::Join`.
+    let put_on = if beyond > 0.0 { f64::count(n / 2 + 5) * beyond + extent } else { 0.0 };
+    let rounding = (f64::count(n + 2) * (a.extent + b.extent + beyond) + put_on) * f64::ROUNDOFF;
+    let error = a.stated_error(n).at_least(b.stated_error(n));
+    set.put(qdist_set_f64 {
+        radius,
+        extent,
+        error: ((error + rounding) * 1.000001).at_least(tiny()),
+        contains_origin: (a.knows_origin(n) || b.knows_origin(n)).into(),
+        ..qdist_pair_f64::set::<Join>(pair, a, b, n)
+    })
+}
+
+// ------------------------------------------------------------------------------------------------- linear images
+
+impl qdist_linear_f64 {
+    fn matrix(&self) -> Check<&[f64]> {
+        self.matrix.array(Some(dimension(self.rows)? * dimension(self.columns)?))
+    }
+}
+
+struct Linear;
+
+impl AnswersAny for Linear {
+    type Struct = qdist_linear_f64;
+    fn dimension(map: &qdist_linear_f64) -> Check<usize> {
+        dimension(map.rows)
+    }
+    fn farthest(map: &qdist_linear_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
+        let (matrix, columns) = (map.matrix()?, dimension(map.columns)?);
+        let set = map.set.get()?;
         let mut w = [0.0; MAX_DIMENSION];
         for (row, &x) in matrix.chunks_exact(columns).zip(u) {
             for (w, &m) in w.iter_mut().zip(row) {
@@ -401,9 +254,40 @@ unsafe fn ask_linear(user: *mut c_void, direction: *const f64, point: *mut f64, 
                 *x += scale * w;
             }
         }
-        for (i, (row, t)) in matrix.chunks_exact(columns).zip(&map.translation).enumerate() {
-            point.add(i).write(dot(row, &x) + t);
+        let mut image = [0.0; MAX_DIMENSION];
+        for ((to, row), t) in image.iter_mut().zip(matrix.chunks_exact(columns)).zip(&map.translation) {
+            *to = dot(row, &x) + t;
         }
+        Ok(image)
     }
-    Ok(())
+}
+
+fn fill_linear(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> Check {
+    set.checked()?;
+    let linear = map.get()?;
+    let (inner, columns) = (linear.set.get()?, dimension(linear.columns)?);
+    inner.check(columns)?;
+    let (matrix, n) = (linear.matrix()?, dimension(linear.rows)?);
+    let shift = first(&linear.translation, n)?;
+    coordinates(matrix)?;
+    coordinates(shift)?;
+    let stretch = norm(matrix);
+    // Without an extent, the rounding of an ill-conditioned map could not be bounded.
+    if !(inner.extent > 0.0) {
+        return Err(QDIST_ERROR_ARGUMENT);
+    }
+    let reach = length(stretch * (inner.extent + inner.radius) + norm(shift))?;
+    let own = inner.stated_error(columns);
+    // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
+    let error = length((stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001)?;
+    set.put(qdist_set_f64 {
+        support: Some(support_any::<Linear, false>),
+        exhaustive: if inner.exhaustive.is_some() { Some(support_any::<Linear, true>) } else { None },
+        user: map.user(),
+        extent: reach,
+        error,
+        dimension: linear.rows,
+        contains_origin: (shift.iter().all(|&x| x == 0.0) && inner.knows_origin(columns)).into(),
+        ..qdist_set_f64::NONE
+    })
 }

@@ -1,5 +1,8 @@
-//! The C ABI for `f64`.
+//! The C ABI for `f64`: a file for each chapter of the header, and what the chapters share, in `answers`, `asked`, `bodies` and `unit_shapes`.
 
+mod answers;
+mod asked;
+mod bodies;
 pub mod combine;
 #[cfg(feature = "grasp")]
 pub mod grasp;
@@ -13,4 +16,5 @@ pub mod shapes;
 pub mod solver;
 pub mod span;
 pub mod unit_sets;
+mod unit_shapes;
 pub mod warm;

@@ -4,27 +4,31 @@
 //! climbing from vertex to vertex. The lists must outlive the set or body that is made of them, which is when their
 //! coordinates are read and checked: make it anew when they change.
 
-use super::super::generic::{
-    Deadline, MAX_DIMENSION, aligned, array, as_points, coordinates, dimension, farthest, gaps, in_range, put, reach,
-    shared, tiny,
-};
+use super::super::callback::Deadline;
 use super::super::handle::{self, qdist_solver};
+use super::super::numbers::{
+    MAX_DIMENSION, as_points, coordinates, dimension, farthest, in_range, padded, reach, tiny,
+};
+use super::super::pointer::{In, Out, gaps};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_HULL_POINTS, QDIST_ERROR_WORKSPACE_SIZE,
-    from_graph, qdist_interrupt, qdist_status, status,
+    from_graph, from_shape, qdist_interrupt, qdist_status, status,
 };
-use super::sets::{answer_precisely, arguments, qdist_body_f64, qdist_set_f64, qdist_support_f64, room};
+use super::answers::{Answers, AnswersAny, exhaustive_of, precise_of, support_any, support_of};
+use super::bodies::{Placed, Stated};
+use super::sets::{qdist_body_f64, qdist_set_f64};
 use core::ffi::c_void;
-use qdist::Real;
+use core::marker::PhantomData;
 use qdist::internal::{List, near_unit, one_by_one};
 use qdist::support::{HullGraph, Points, Support, Word, graph_len, large_graph_len};
 use qdist::{HullFacet, hull_facets, prepare_hull};
+use qdist::{Real, TwoWords, Vector};
 
 /// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_points_f64 {
-    pub points: *const f64,
+    pub points: In<f64>,
     pub count: u32,
     /// 2 to 6.
     pub dimension: u32,
@@ -38,7 +42,7 @@ pub struct qdist_points_f64 {
 pub struct qdist_hull_f64 {
     /// Of dimension 3.
     pub points: qdist_points_f64,
-    pub graph: *const u16,
+    pub graph: In<u16>,
     /// Length of `graph`.
     pub graph_len: u32,
 }
@@ -51,7 +55,7 @@ gaps!(qdist_hull_f64, points.dimension..graph, graph_len..);
 pub struct qdist_hull_large_f64 {
     /// Of dimension 3.
     pub points: qdist_points_f64,
-    pub graph: *const u32,
+    pub graph: In<u32>,
     /// Length of `graph`.
     pub graph_len: u32,
 }
@@ -71,109 +75,74 @@ const _: () = {
 
 /// Makes a set of a list of points of any dimension. Reads all of them.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_points_f64(set: *mut qdist_set_f64, shape: *const qdist_points_f64) -> qdist_status {
-    let fill = || {
-        aligned(set)?;
-        // SAFETY: what the header asks of the caller.
-        let points = unsafe { shared(shape) }?;
-        let n = dimension(points.dimension)?;
-        // SAFETY: what the header asks of the caller.
-        let list = unsafe { points.coordinates() }?;
-        coordinates(list)?;
-        let extent = reach(list, n);
-        let made = qdist_set_f64 {
-            support: Some(qdist_points_support_f64),
-            exhaustive: None,
-            mirrored: None,
-            user: shape.cast_mut().cast(),
-            radius: 0.0,
-            extent,
-            error: f64::count(2 * n + 2) * f64::ROUNDOFF * extent,
-            dimension: points.dimension,
-            contains_origin: 0,
-        };
-        // SAFETY: checked.
-        unsafe { put(set, made) };
-        Ok(())
-    };
-    status(fill())
+pub extern "C" fn qdist_set_points_f64(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> qdist_status {
+    status(fill_set(set, shape))
 }
 
 /// Makes a body of a list of points of dimension 3. Reads all of them.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_points_f64(
-    body: *mut qdist_body_f64,
-    shape: *const qdist_points_f64,
-) -> qdist_status {
-    let supports: [qdist_support_f64; 2] = [Some(qdist_points3_support_f64), Some(qdist_points3_far_support_f64)];
-    let fill = || {
-        // SAFETY: what the header asks of the caller.
-        unsafe { fill(body, shared(shape)?, shape.cast(), supports, [None; 2]) }
-    };
-    status(fill())
+pub extern "C" fn qdist_body_points_f64(body: Out<qdist_body_f64>, shape: In<qdist_points_f64>) -> qdist_status {
+    status(fill_points(body, shape))
 }
 
 /// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
 /// dimension 3, as workspace: max_facets >= 2 * count always suffices, whatever max_vertices is. QDIST_HULL_GRAPH_LEN(count) words
-/// are needed. Points inside the hull are legal, and so are equal points.
+/// are needed. Points inside the hull are legal, and so are equal points. With `interrupt`, which may be NULL, the status may be
+/// QDIST_ERROR_INTERRUPTED.
 ///
 /// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
 /// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
 /// the function to call.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_prepare_f64(
-    hull: *mut qdist_hull_f64,
-    points: *const f64,
+pub extern "C" fn qdist_hull_prepare_f64(
+    hull: Out<qdist_hull_f64>,
+    solver: Out<qdist_solver>,
+    points: In<f64>,
     count: u32,
-    graph: *mut u16,
-    graph_capacity: u32,
-    solver: *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { prepare_until(hull, points, count, graph, graph_capacity, solver, Deadline::NEVER) })
-}
-
-/// The same with a deadline: with `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_prepare_until_f64(
-    hull: *mut qdist_hull_f64,
-    points: *const f64,
-    count: u32,
-    graph: *mut u16,
-    graph_capacity: u32,
-    solver: *mut qdist_solver,
     interrupt: qdist_interrupt,
     interrupt_user: *mut c_void,
+    graph: Out<u16>,
+    graph_capacity: u32,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe {
-        let deadline = Deadline::new(interrupt, interrupt_user);
-        prepare_until(hull, points, count, graph, graph_capacity, solver, deadline)
-    })
+    let list = qdist_points_f64 { points, count, dimension: 3 };
+    let prepare = || {
+        hull.checked()?;
+        graph.checked()?;
+        let (coordinates, mut solver) = (list.coordinates()?, handle::open::<f64, 3>(&solver)?);
+        // Checked before the first word is written.
+        if (graph_capacity as usize) < graph_len(count as usize) {
+            return Err(QDIST_ERROR_WORKSPACE_SIZE);
+        }
+        let words = graph.zeroed(graph_capacity as usize)?;
+        Deadline::new(interrupt, interrupt_user)
+            .during(|interrupt| solver.prepare_hull_until(as_points(coordinates), words, interrupt).map(|_| ()))
+            .map_err(from_graph)?;
+        hull.put(qdist_hull_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
+    };
+    status(prepare())
 }
 
 /// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
 /// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
 /// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_large_prepare_f64(
-    hull: *mut qdist_hull_large_f64,
-    points: *const f64,
-    count: u32,
-    graph: *mut u32,
-    graph_capacity: u32,
-    workspace: *mut u32,
+pub extern "C" fn qdist_hull_large_prepare_f64(
+    hull: Out<qdist_hull_large_f64>,
+    workspace: Out<u32>,
     workspace_capacity: u32,
+    points: In<f64>,
+    count: u32,
     interrupt: qdist_interrupt,
     interrupt_user: *mut c_void,
+    graph: Out<u32>,
+    graph_capacity: u32,
 ) -> qdist_status {
+    let list = qdist_points_f64 { points, count, dimension: 3 };
     let prepare = || {
-        aligned(hull)?;
-        aligned(graph)?;
-        aligned(workspace)?;
-        let list = qdist_points_f64 { points, count, dimension: 3 };
-        // SAFETY: what the header asks of the caller.
-        let coordinates = unsafe { list.coordinates()? };
+        hull.checked()?;
+        graph.checked()?;
+        workspace.checked()?;
+        let coordinates = list.coordinates()?;
         if count as usize > <u32 as Word>::MAX_POINTS {
             return Err(QDIST_ERROR_HULL_POINTS);
         }
@@ -183,176 +152,129 @@ pub unsafe extern "C" fn qdist_hull_large_prepare_f64(
         if (graph_capacity as usize) < large_graph_len(count as usize) || (workspace_capacity as usize) < needed {
             return Err(QDIST_ERROR_WORKSPACE_SIZE);
         }
-        // SAFETY: what the header asks of the caller: as many words, which nothing else refers to. They need no initial value,
-        // but a reference does.
-        let (words, facets, deadline) = unsafe {
-            graph.write_bytes(0, graph_capacity as usize);
-            workspace.write_bytes(0, needed);
-            let words = core::slice::from_raw_parts_mut(graph, graph_capacity as usize);
-            let facets = core::slice::from_raw_parts_mut(workspace.cast::<HullFacet>(), facets);
-            (words, facets, Deadline::new(interrupt, interrupt_user))
-        };
-        deadline
+        let rows = workspace.rows::<HullFacet>();
+        let (words, facets) = (graph.zeroed(graph_capacity as usize)?, rows.zeroed(facets)?);
+        Deadline::new(interrupt, interrupt_user)
             .during(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
             .map_err(from_graph)?;
-        // SAFETY: checked.
-        unsafe { put(hull, qdist_hull_large_f64 { points: list, graph, graph_len: graph_capacity }) };
-        Ok(())
+        hull.put(qdist_hull_large_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
     };
     status(prepare())
 }
 
 /// Makes a body of a prepared hull. Reads all points.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_hull_f64(body: *mut qdist_body_f64, shape: *const qdist_hull_f64) -> qdist_status {
-    let supports: [qdist_support_f64; 2] = [Some(qdist_hull_support_f64), Some(qdist_hull_far_support_f64)];
-    // The points are the first member of the hull, so that a function of points serves for a hull.
-    let exhaustive: [qdist_support_f64; 2] = [Some(qdist_points3_support_f64), Some(qdist_points3_far_support_f64)];
-    let fill = || {
-        // SAFETY: what the header asks of the caller.
-        unsafe {
-            let hull = shared(shape)?;
-            hull.open()?;
-            fill(body, &hull.points, shape.cast(), supports, exhaustive)
-        }
-    };
-    status(fill())
+pub extern "C" fn qdist_body_hull_f64(body: Out<qdist_body_f64>, shape: In<qdist_hull_f64>) -> qdist_status {
+    status(fill_hull(body, shape))
 }
 
 /// Makes a body of a large hull. Reads all points.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_body_hull_large_f64(
-    body: *mut qdist_body_f64,
-    shape: *const qdist_hull_large_f64,
+pub extern "C" fn qdist_body_hull_large_f64(
+    body: Out<qdist_body_f64>,
+    shape: In<qdist_hull_large_f64>,
 ) -> qdist_status {
-    let supports: [qdist_support_f64; 2] = [Some(qdist_hull_large_support_f64), Some(qdist_hull_large_far_support_f64)];
-    // The points are the first member of the hull, so that a function of points serves for a hull.
-    let exhaustive: [qdist_support_f64; 2] = [Some(qdist_points3_support_f64), Some(qdist_points3_far_support_f64)];
-    let fill = || {
-        // SAFETY: what the header asks of the caller.
-        unsafe {
-            let hull = shared(shape)?;
-            hull.open()?;
-            fill(body, &hull.points, shape.cast(), supports, exhaustive)
-        }
-    };
-    status(fill())
-}
-
-/// Support function of a list of points of any dimension.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_points_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    let ask = || {
-        // SAFETY: what the header asks of the caller.
-        let (list, n, u) = unsafe {
-            let shape = shared(user.cast::<qdist_points_f64>().cast_const())?;
-            let n = dimension(shape.dimension)?;
-            (shape.coordinates()?, n, array(direction, Some(n))?)
-        };
-        room::<1>(point)?;
-        let (_, best) = farthest(list, n, in_range(u, &mut [0.0; MAX_DIMENSION])).ok_or(QDIST_ERROR_ARGUMENT)?;
-        // SAFETY: `best` and the caller's room have n numbers.
-        unsafe { best.as_ptr().copy_to(point, n) };
-        Ok(())
-    };
-    status(ask())
-}
-
-/// Support function of a list of points of dimension 3.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_points3_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { scan::<false, 3>(user, direction, point) })
-}
-
-/// The same, more accurate where all points are far from the origin compared with their spread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_points3_far_support_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { scan::<true, 3>(user, direction, point) })
-}
-
-/// Support function of a prepared hull.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<false, qdist_hull_f64>(user, direction, point) })
-}
-
-/// The same, more accurate where all points are far from the origin compared with their spread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_far_support_f64(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<true, qdist_hull_f64>(user, direction, point) })
-}
-
-/// Support function of a large hull.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_large_support_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<false, qdist_hull_large_f64>(user, direction, point) })
-}
-
-/// The same, more accurate where all points are far from the origin compared with their spread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_hull_large_far_support_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { climb::<true, qdist_hull_large_f64>(user, direction, point) })
+    status(fill_hull(body, shape))
 }
 
 impl qdist_points_f64 {
-    /// # Safety
-    /// If not NULL and aligned, `points` is valid for reads of all coordinates.
     #[inline(always)]
-    pub(super) unsafe fn coordinates<'a>(&self) -> Check<&'a [f64]> {
-        let length = (self.count as usize).checked_mul(self.dimension as usize);
-        // SAFETY: the caller's promise.
-        unsafe { array(self.points, length) }
+    pub(super) fn coordinates(&self) -> Check<&[f64]> {
+        self.points.array((self.count as usize).checked_mul(self.dimension as usize))
     }
 
     /// The points, of dimension `N`.
-    ///
-    /// # Safety
-    /// As for [`coordinates`](Self::coordinates).
     #[inline(always)]
-    unsafe fn points<'a, const N: usize>(&self) -> Check<&'a [[f64; N]]> {
-        if self.dimension as usize != N {
-            return Err(QDIST_ERROR_DIMENSION);
-        }
-        // SAFETY: the caller's promise.
-        Ok(as_points(unsafe { self.coordinates() }?))
+    fn points<const N: usize>(&self) -> Check<&[[f64; N]]> {
+        if self.dimension as usize == N { Ok(as_points(self.coordinates()?)) } else { Err(QDIST_ERROR_DIMENSION) }
     }
 
     /// The points, to be searched.
-    ///
-    /// # Safety
-    /// As for [`coordinates`](Self::coordinates).
     #[inline(always)]
-    unsafe fn list<'a, const N: usize>(&self) -> Check<List<'a, f64, N>> {
-        // SAFETY: the caller's promise.
-        List::new(unsafe { self.points() }?).ok_or(QDIST_ERROR_ARGUMENT)
+    fn list<const N: usize>(&self) -> Check<List<'_, f64, N>> {
+        List::new(self.points()?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
+/// A list of points of any dimension, as a set.
+struct Anywhere;
+
+impl AnswersAny for Anywhere {
+    type Struct = qdist_points_f64;
+    fn dimension(points: &qdist_points_f64) -> Check<usize> {
+        dimension(points.dimension)
+    }
+    fn farthest(points: &qdist_points_f64, u: &[f64], _exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
+        let (_, best) = farthest(points.coordinates()?, u.len(), in_range(u, &mut [0.0; MAX_DIMENSION]))
+            .ok_or(QDIST_ERROR_ARGUMENT)?;
+        Ok(padded(best.iter().copied()))
+    }
+}
+
+fn fill_set(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> Check {
+    set.checked()?;
+    let points = shape.get()?;
+    let n = dimension(points.dimension)?;
+    let list = points.coordinates()?;
+    coordinates(list)?;
+    let extent = reach(list, n);
+    set.put(qdist_set_f64 {
+        support: Some(support_any::<Anywhere, false>),
+        user: shape.user(),
+        extent,
+        error: f64::count(2 * n + 2) * f64::ROUNDOFF * extent,
+        dimension: points.dimension,
+        ..qdist_set_f64::NONE
+    })
+}
+
+/// By looking at all points; `FAR`: more accurate where all are far from the origin compared with their spread.
+struct Scan<const FAR: bool>;
+
+impl<const FAR: bool, const N: usize> Answers<N> for Scan<FAR> {
+    type Struct = qdist_points_f64;
+    #[inline(always)]
+    fn farthest(points: &qdist_points_f64, u: &Vector<f64, N>, _exhaustive: bool) -> Check<Vector<f64, N>> {
+        Ok(Vector::from(*points.list()?.scan::<FAR>(&near_unit(one_by_one(u)))))
+    }
+    fn precise(points: &qdist_points_f64, u: &TwoWords<f64, N>) -> Option<TwoWords<f64, N>> {
+        points.list::<N>().ok()?.support_in_two_words(u)
+    }
+}
+
+/// Fills a body with a list of points.
+pub(super) fn fill_points<B: Placed<N>, const N: usize>(body: Out<B>, shape: In<qdist_points_f64>) -> Check {
+    body.checked()?;
+    let none = qdist_set_f64 { user: shape.user(), ..qdist_set_f64::NONE };
+    let near = qdist_set_f64 { support: support_of::<Scan<false>, N>(), ..none };
+    let far = qdist_set_f64 { support: support_of::<Scan<true>, N>(), ..none };
+    body.put(of_points(shape.get()?, near, far)?)
+}
+
+/// A body of points, with the functions of the first set for points around the origin, of the second for points far from it.
+fn of_points<B: Placed<N>, const N: usize>(
+    points: &qdist_points_f64,
+    near: qdist_set_f64,
+    far: qdist_set_f64,
+) -> Check<B> {
+    let all = Points::new(points.points::<N>()?).map_err(from_shape)?;
+    let stated = Stated { precise: precise_of::<Scan<false>, N>(), ..Stated::of(&all) };
+    let set = qdist_set_f64 {
+        extent: all.extent().at_least(tiny()),
+        error: all.error().at_least(tiny()),
+        dimension: N as u32,
+        ..if stated.spread > 0.0 { far } else { near }
+    };
+    Ok(B::new(set, stated))
+}
+
+// ------------------------------------------------------------------------------------------------- prepared hulls
+
 /// A hull of either size.
-trait Hull {
+trait Hull: 'static {
     type Word: Word + 'static;
     fn points(&self) -> &qdist_points_f64;
-    /// # Safety
-    /// If not NULL and aligned, `graph` is valid for reads of `graph_len` words.
-    unsafe fn open<'a>(&self) -> Check<HullGraph<'a, Self::Word>>;
+    fn open(&self) -> Check<HullGraph<'_, Self::Word>>;
 }
 
 impl Hull for qdist_hull_f64 {
@@ -362,9 +284,8 @@ impl Hull for qdist_hull_f64 {
         &self.points
     }
     #[inline(always)]
-    unsafe fn open<'a>(&self) -> Check<HullGraph<'a>> {
-        // SAFETY: the caller's promise.
-        HullGraph::from_words(unsafe { array(self.graph, Some(self.graph_len as usize)) }?).ok_or(QDIST_ERROR_ARGUMENT)
+    fn open(&self) -> Check<HullGraph<'_>> {
+        HullGraph::from_words(self.graph.array(Some(self.graph_len as usize))?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
@@ -375,149 +296,44 @@ impl Hull for qdist_hull_large_f64 {
         &self.points
     }
     #[inline(always)]
-    unsafe fn open<'a>(&self) -> Check<HullGraph<'a, u32>> {
-        // SAFETY: the caller's promise.
-        HullGraph::from_words(unsafe { array(self.graph, Some(self.graph_len as usize)) }?).ok_or(QDIST_ERROR_ARGUMENT)
+    fn open(&self) -> Check<HullGraph<'_, u32>> {
+        HullGraph::from_words(self.graph.array(Some(self.graph_len as usize))?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
-/// [`qdist_hull_prepare_until_f64`].
-///
-/// # Safety
-/// What the header asks of the caller.
-unsafe fn prepare_until(
-    hull: *mut qdist_hull_f64,
-    points: *const f64,
-    count: u32,
-    graph: *mut u16,
-    graph_capacity: u32,
-    solver: *mut qdist_solver,
-    deadline: Deadline,
-) -> Check {
-    aligned(hull)?;
-    aligned(graph)?;
-    let list = qdist_points_f64 { points, count, dimension: 3 };
-    // SAFETY: the caller's promise.
-    let (coordinates, mut solver) = unsafe { (list.coordinates()?, handle::open::<f64, 3>(solver)?) };
-    // Checked before the first word is written.
-    if (graph_capacity as usize) < graph_len(count as usize) {
-        return Err(QDIST_ERROR_WORKSPACE_SIZE);
-    }
-    // SAFETY: the caller's promise: as many words, which nothing else refers to. They need no initial value, but a reference
-    // does.
-    let words = unsafe {
-        graph.write_bytes(0, graph_capacity as usize);
-        core::slice::from_raw_parts_mut(graph, graph_capacity as usize)
-    };
-    deadline
-        .during(|interrupt| solver.prepare_hull_until(as_points(coordinates), words, interrupt).map(|_| ()))
-        .map_err(from_graph)?;
-    // SAFETY: checked.
-    unsafe { put(hull, qdist_hull_f64 { points: list, graph, graph_len: graph_capacity }) };
-    Ok(())
-}
+/// By climbing from vertex to vertex.
+struct Climb<H, const FAR: bool>(PhantomData<H>);
 
-/// A set, its center and its spread about that, and its extents and errors along the axes.
-/// cbindgen:ignore
-type Placed<const N: usize> = (qdist_set_f64, Option<([f64; N], f64)>, [[f64; N]; 2]);
-
-/// A set of points, and where they lie when that is far from the origin; of each pair of functions the first is for points around
-/// the origin, the second for points far from it.
-///
-/// # Safety
-/// `user` is what the functions expect; if not NULL and aligned, the points are valid for reads.
-pub(super) unsafe fn set_of<const N: usize>(
-    points: &qdist_points_f64,
-    user: *const c_void,
-    supports: [qdist_support_f64; 2],
-    exhaustive: [qdist_support_f64; 2],
-) -> Check<Placed<N>> {
-    // SAFETY: the caller's promise.
-    let list = unsafe { points.points::<N>() }?;
-    let all = Points::new(list).map_err(super::super::status::from_shape)?;
-    let [near, far] = supports;
-    let [exhaustive_near, exhaustive_far] = exhaustive;
-    let center = all.center();
-    let set = qdist_set_f64 {
-        support: if center.is_some() { far } else { near },
-        exhaustive: if center.is_some() { exhaustive_far } else { exhaustive_near },
-        mirrored: None,
-        user: user.cast_mut(),
-        radius: 0.0,
-        extent: all.extent().at_least(tiny()),
-        error: all.error().at_least(tiny()),
-        dimension: N as u32,
-        contains_origin: 0,
-    };
-    let center = center.map(|(center, spread)| (center.into(), spread.at_least(tiny())));
-    Ok((set, center, [all.extents().into(), all.errors().into()]))
-}
-
-/// The support function of points in two words. (The points are the first member of a hull.)
-pub(super) unsafe extern "C" fn precise<const N: usize>(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller.
-    unsafe {
-        answer_precisely(user, direction, point, |points: &qdist_points_f64, u| {
-            points.list::<N>().ok()?.support_in_two_words(u)
-        })
+impl<H: Hull, const FAR: bool> Answers<3> for Climb<H, FAR> {
+    type Struct = H;
+    #[inline(always)]
+    fn farthest(hull: &H, u: &Vector<f64, 3>, _exhaustive: bool) -> Check<Vector<f64, 3>> {
+        let (list, graph) = (hull.points().list()?, hull.open()?);
+        Ok(Vector::from(*list.climb::<FAR, H::Word>(&graph, &near_unit(one_by_one(u)))))
     }
 }
 
-/// Fills a body with points.
-///
-/// # Safety
-/// As for [`set_of`]; if not NULL and aligned, `body` is valid for writes.
-unsafe fn fill(
-    body: *mut qdist_body_f64,
-    points: &qdist_points_f64,
-    user: *const c_void,
-    supports: [qdist_support_f64; 2],
-    exhaustive: [qdist_support_f64; 2],
-) -> Check {
-    aligned(body)?;
-    // SAFETY: the caller's promise.
-    let (set, center, [extents, errors]) = unsafe { set_of::<3>(points, user, supports, exhaustive) }?;
-    let mut made = qdist_body_f64 { extents, errors, precise: Some(precise::<3>), ..qdist_body_f64::at_origin(set) };
-    if let Some((center, spread)) = center {
-        (made.center, made.spread) = (center, spread);
-    }
-    // SAFETY: checked.
-    unsafe { put(body, made) };
-    Ok(())
-}
-
-/// # Safety
-/// Those of a support function.
-#[inline(always)]
-pub(super) unsafe fn scan<const FAR: bool, const N: usize>(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> Check {
-    // SAFETY: the caller's promise.
-    let (list, u, room) = unsafe {
-        let (points, u, room) = arguments::<qdist_points_f64, N>(user, direction, point)?;
-        (points.list()?, u, room)
+fn fill_hull<H: Hull>(body: Out<qdist_body_f64>, shape: In<H>) -> Check {
+    let hull = shape.get()?;
+    hull.open()?;
+    body.checked()?;
+    let none = qdist_set_f64 { user: shape.user(), ..qdist_set_f64::NONE };
+    // The points are the first member of the hull, so that a function of points serves for a hull.
+    const {
+        assert!(
+            core::mem::offset_of!(qdist_hull_f64, points) == 0
+                && core::mem::offset_of!(qdist_hull_large_f64, points) == 0
+        )
     };
-    // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.scan::<FAR>(&near_unit(one_by_one(u)))) };
-    Ok(())
-}
-
-/// # Safety
-/// Those of a support function.
-#[inline(always)]
-unsafe fn climb<const FAR: bool, H: Hull>(user: *mut c_void, direction: *const f64, point: *mut f64) -> Check {
-    // SAFETY: the caller's promise.
-    let (list, graph, u, room) = unsafe {
-        let (hull, u, room) = arguments::<H, 3>(user, direction, point)?;
-        (hull.points().list()?, hull.open()?, u, room)
+    let near = qdist_set_f64 {
+        support: support_of::<Climb<H, false>, 3>(),
+        exhaustive: exhaustive_of::<Scan<false>, 3>(),
+        ..none
     };
-    // SAFETY: `arguments` has checked it.
-    unsafe { room.write(*list.climb::<FAR, H::Word>(&graph, &near_unit(one_by_one(u)))) };
-    Ok(())
+    let far = qdist_set_f64 {
+        support: support_of::<Climb<H, true>, 3>(),
+        exhaustive: exhaustive_of::<Scan<true>, 3>(),
+        ..none
+    };
+    body.put(of_points(hull.points(), near, far)?)
 }

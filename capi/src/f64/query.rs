@@ -21,24 +21,16 @@
 //! It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
 //! one-sided derivatives, each the least of those at all minimisers.
 
-use super::super::generic::{
-    Deadline, MAX_DIMENSION, MAX_POINTS, aligned, finite, first, flag, gaps, known_size, length, padded, put, shared,
-};
-use super::super::handle::{self, Opened, qdist_solver};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, from_body, from_status, outcome, overflow, plan,
-    qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status,
-};
-use super::sets::{CheckedSet, qdist_body_f64, qdist_set_f64};
-use super::unit_sets::{CheckedUnit, qdist_unit_f64};
+use super::super::handle::qdist_solver;
+use super::super::numbers::MAX_DIMENSION;
+use super::super::pointer::{Defaults, In, Out, gaps, versioned};
+use super::super::status::{qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status};
+use super::asked::Question;
+use super::bodies::depth;
+use super::sets::{qdist_body_f64, qdist_set_f64};
+use super::unit_sets::qdist_unit_f64;
 use core::ffi::c_void;
-#[cfg(feature = "grasp")]
-use qdist::Plan;
-use qdist::internal::{alone, one_by_one};
-use qdist::{Answer, Depth, Options, Outcome};
-use qdist::{Real, Vector};
-#[cfg(feature = "grasp")]
-use qdist::{Simplex, Vertex};
+use qdist::Real;
 
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.
@@ -70,6 +62,7 @@ pub struct qdist_options_f64 {
 }
 
 gaps!(qdist_options_f64, guess..);
+versioned!(qdist_options_f64);
 
 /// The depth of two bodies.
 #[repr(C)]
@@ -106,6 +99,7 @@ pub struct qdist_depth_f64 {
 }
 
 gaps!(qdist_depth_f64, callback_code..);
+versioned!(qdist_depth_f64);
 
 /// The generalized depth of the origin in a set.
 #[repr(C)]
@@ -155,14 +149,12 @@ pub struct qdist_result_f64 {
 }
 
 gaps!(qdist_result_f64, callback_code..);
+versioned!(qdist_result_f64);
 
-/// Writes the defaults.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_options_default_f64(options: *mut qdist_options_f64) -> qdist_status {
-    let fill = || {
-        aligned(options)?;
-        let default = qdist_options_f64 {
-            struct_size: size_of::<qdist_options_f64>() as u32,
+impl Defaults for qdist_options_f64 {
+    fn defaults() -> Self {
+        Self {
+            struct_size: size_of::<Self>() as u32,
             max_iterations: 0,
             interrupt: None,
             interrupt_user: core::ptr::null_mut(),
@@ -172,305 +164,88 @@ pub unsafe extern "C" fn qdist_options_default_f64(options: *mut qdist_options_f
             use_threshold: 0,
             use_guess: 0,
             guess: [0.0; MAX_DIMENSION],
-        };
-        // SAFETY: checked.
-        unsafe { put(options, default) };
-        Ok(())
-    };
-    status(fill())
+        }
+    }
+}
+
+/// Writes the defaults.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_options_default_f64(options: Out<qdist_options_f64>) -> qdist_status {
+    status(options.put(qdist_options_f64::defaults()))
 }
 
 /// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
 /// one of dimension 3. Swapping A and B turns the normal and swaps the points.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_depth3_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_body_f64,
-    b: *const qdist_body_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_depth_f64,
+pub extern "C" fn qdist_depth3_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_body_f64>,
+    b: In<qdist_body_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_depth_f64>,
 ) -> qdist_status {
-    let solve = || {
-        aligned(result)?;
-        // SAFETY: what the header asks of the caller.
-        let (mut solver, a, b) = unsafe {
-            let (a, b) = (shared(a)?, shared(b)?);
-            let solver = handle::open::<f64, 3>(solver)?;
-            known_size((&raw const (*result).struct_size).read(), size_of::<qdist_depth_f64>())?;
-            (solver, a, b)
-        };
-        if let Some(answer) = a.unbounded.or(b.unbounded) {
-            let (a, b): (*const qdist_body_f64, *const qdist_body_f64) = (a, b);
-            // SAFETY: a function of this library for these arguments, which are checked.
-            return from_status(unsafe { answer(a.cast(), b.cast(), options.cast(), result.cast()) });
-        }
-        // SAFETY: what the header asks of the caller.
-        let (a, b, options) = unsafe { (a.checked()?, b.checked()?, convert::<3>(options)) };
-        // Taken by reference out of their `Result`s: to move a large struct that was just written takes long.
-        let (a, b) = (a.place(), b.place());
-        let depth = match (&a, &b, &options) {
-            (Ok(a), Ok(b), Ok((options, deadline))) => {
-                deadline.during(|interrupt| solver.depth_until(a, b, options, interrupt))
-            }
-            (_, _, Err(status)) => return Err(*status),
-            (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),
-        };
-        overflow(depth.failure)?;
-        // SAFETY: checked.
-        unsafe { put(result, from_depth(&depth)) };
-        conclude(depth.outcome)
-    };
-    status(solve())
+    status(depth(solver, a, b, options, result, |solver, [a, b], options, interrupt| {
+        solver.depth_until(a, b, options, interrupt)
+    }))
 }
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
 /// NULL: the unit ball.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve2_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+pub extern "C" fn qdist_solve2_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve::<2>(solver, a, q, options, result) })
+    status(Question { solver, a, q, options, result }.solve::<2>())
 }
 
 /// The same in dimension 3.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve3_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+pub extern "C" fn qdist_solve3_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve::<3>(solver, a, q, options, result) })
+    status(Question { solver, a, q, options, result }.solve::<3>())
 }
 
 /// The same in dimension 4.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve4_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+pub extern "C" fn qdist_solve4_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve::<4>(solver, a, q, options, result) })
+    status(Question { solver, a, q, options, result }.solve::<4>())
 }
 
 /// The same in dimension 5.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve5_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+pub extern "C" fn qdist_solve5_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve::<5>(solver, a, q, options, result) })
+    status(Question { solver, a, q, options, result }.solve::<5>())
 }
 
 /// The same in dimension 6.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve6_f64(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+pub extern "C" fn qdist_solve6_f64(
+    solver: Out<qdist_solver>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve::<6>(solver, a, q, options, result) })
-}
-
-/// The options as the solver knows them, and the deadline.
-///
-/// # Safety
-/// If not NULL and aligned, `options` is valid for reads; during the query `interrupt` may be called.
-pub(super) unsafe fn convert<const N: usize>(options: *const qdist_options_f64) -> Check<(Options<f64, N>, Deadline)> {
-    if options.is_null() {
-        return Ok((Options::default(), Deadline::NEVER));
-    }
-    // SAFETY: the caller's promise.
-    let options = unsafe { shared(options) }?;
-    known_size(options.struct_size, size_of::<qdist_options_f64>())?;
-    let (absolute, relative) = (length(options.absolute)?, length(options.relative)?);
-    if !(absolute > 0.0 || relative > 0.0) {
-        return Err(QDIST_ERROR_ARGUMENT);
-    }
-    let threshold = if flag(options.use_threshold)? {
-        finite(&[options.threshold])?;
-        Some(options.threshold)
-    } else {
-        None
-    };
-    let guess = if flag(options.use_guess)? {
-        let guess = first(&options.guess, N)?;
-        finite(guess)?;
-        Some(Vector::from_iterator(guess.iter().copied()))
-    } else {
-        None
-    };
-    // SAFETY: the caller's promise.
-    let deadline = unsafe { Deadline::new(options.interrupt, options.interrupt_user) };
-    Ok((Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess }, deadline))
-}
-
-pub(super) fn conclude(outcome: Outcome) -> Check {
-    if outcome == Outcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
-}
-
-/// The result for C; the third numbers of vectors in the plane are 0.
-pub(super) fn from_depth<const N: usize>(depth: &Depth<f64, N>) -> qdist_depth_f64 {
-    let vector = |v: &Vector<f64, N>| {
-        let mut all = [0.0; 3];
-        for (to, &x) in all.iter_mut().zip(&one_by_one(v)) {
-            *to = x;
-        }
-        all
-    };
-    qdist_depth_f64 {
-        struct_size: size_of::<qdist_depth_f64>() as u32,
-        outcome: outcome(depth.outcome),
-        lower: depth.lower,
-        upper: depth.upper,
-        normal: vector(&depth.normal),
-        point_a: vector(&depth.point_a),
-        point_b: vector(&depth.point_b),
-        dimension: depth.dimension as u32,
-        iterations: depth.iterations,
-        support_calls: depth.support_calls,
-        vertices_used: alone(&depth.vertices) as u32,
-        facets_used: alone(&depth.facets) as u32,
-        callback_code: depth.failure,
-    }
-}
-
-pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) -> qdist_result_f64 {
-    let vector = |v: &Vector<f64, N>| padded(v.iter().copied());
-    let mut result = qdist_result_f64 {
-        struct_size: size_of::<qdist_result_f64>() as u32,
-        outcome: outcome(answer.outcome),
-        plan: plan(answer.plan),
-        has_rival: u32::from(answer.rival.is_some()),
-        lower: answer.lower,
-        upper: answer.upper,
-        direction: vector(&answer.direction),
-        support: vector(&answer.support),
-        unit: answer.unit,
-        rival: answer.rival.as_ref().map_or([0.0; MAX_DIMENSION], vector),
-        weights: [0.0; MAX_POINTS],
-        points: [0.0; MAX_POINTS * MAX_DIMENSION],
-        point_count: answer.witness.corners.len() as u32,
-        dimension: answer.dimension as u32,
-        iterations: answer.iterations,
-        support_calls: answer.support_calls,
-        vertices_used: answer.vertices as u32,
-        facets_used: answer.facets as u32,
-        cones: answer.cones,
-        splits: answer.splits,
-        callback_code: code,
-    };
-    for (to, corner) in result.weights.iter_mut().zip(&answer.witness.corners) {
-        *to = corner.weight;
-    }
-    let coordinates = answer.witness.corners.iter().flat_map(|corner| corner.vertex.point.iter());
-    for (to, &x) in result.points.iter_mut().zip(coordinates) {
-        *to = x;
-    }
-    result
-}
-
-/// The answer of a result in dimension 6, without the evidence for `lower`: what there is to know about the minimiser.
-#[cfg(feature = "grasp")]
-pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
-    finite(&[result.lower, result.upper, result.unit])?;
-    finite(&result.direction).and(finite(&result.support)).and(finite(&result.rival))?;
-    let rival = flag(result.has_rival)?.then(|| Vector::from(result.rival));
-    Ok(Answer {
-        outcome: Outcome::Converged,
-        lower: result.lower,
-        upper: result.upper,
-        direction: Vector::from(result.direction),
-        support: Vector::from(result.support),
-        unit: result.unit,
-        rival,
-        plan: Plan::Expansion,
-        witness: Simplex::new(Vertex::empty()),
-        dimension: result.dimension as usize,
-        iterations: result.iterations,
-        support_calls: result.support_calls,
-        vertices: 0,
-        facets: 0,
-        cones: 0,
-        splits: 0,
-        failure: 0,
-    })
-}
-
-/// A query in dimension `N` whose arguments have passed the checks.
-pub(super) struct Asked<'w, const N: usize> {
-    pub solver: Opened<'w, f64, N>,
-    pub a: &'w CheckedSet,
-    pub q: CheckedUnit,
-    pub options: Options<f64, N>,
-    pub deadline: Deadline,
-    result: *mut qdist_result_f64,
-}
-
-impl<const N: usize> Asked<'_, N> {
-    /// Checks the arguments of a query.
-    ///
-    /// # Safety
-    /// What the header asks of the caller of `qdist_solve`, for the life of the value.
-    #[inline(always)]
-    pub unsafe fn new(
-        solver: *mut qdist_solver,
-        a: *const qdist_set_f64,
-        q: *const qdist_unit_f64,
-        options: *const qdist_options_f64,
-        result: *mut qdist_result_f64,
-    ) -> Check<Self> {
-        aligned(result)?;
-        // SAFETY: the caller's promise.
-        unsafe {
-            let a = shared(a)?;
-            let solver = handle::open::<f64, N>(solver)?;
-            known_size((&raw const (*result).struct_size).read(), size_of::<qdist_result_f64>())?;
-            let a = a.checked::<N>()?;
-            let (options, deadline) = convert::<N>(options)?;
-            Ok(Self { solver, a, q: CheckedUnit::new::<N>(q)?, options, deadline, result })
-        }
-    }
-
-    /// Writes the result.
-    #[inline(always)]
-    pub fn conclude(&self, answer: &Answer<f64, N>) -> Check {
-        overflow(answer.failure)?;
-        // SAFETY: `new` has checked it.
-        unsafe { put(self.result, from_answer(answer, self.q.code(answer.failure))) };
-        conclude(answer.outcome)
-    }
-}
-
-/// # Safety
-/// What the header asks of the caller of `qdist_solve`.
-unsafe fn solve<const N: usize>(
-    solver: *mut qdist_solver,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
-) -> Check {
-    // SAFETY: the caller's promise.
-    let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
-    let Asked { solver, a, q, options, deadline, .. } = &mut asked;
-    let answer = deadline.during(|interrupt| solver.solve_until(*a, q.unit(), options, interrupt));
-    asked.conclude(&answer)
+    status(Question { solver, a, q, options, result }.solve::<6>())
 }

@@ -9,98 +9,21 @@
 //! rare. When either is full, qdist_solve goes on cone by cone in the same memory, and qdist_depth3 ends with
 //! QDIST_CAPACITY and a bracket that is still true; results say how much was used.
 
-use super::super::generic::aligned;
 use super::super::handle::{self, qdist_solver};
-use super::super::status::{QDIST_ERROR_DIMENSION, qdist_status, status};
+use super::super::pointer::Out;
+use super::super::status::{qdist_status, status};
 use core::ffi::c_void;
 
-/// The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64.
+/// Makes a solver of a dimension of 2 to 6 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
+/// which is that of the memory.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_workspace_query_f64(
+pub extern "C" fn qdist_solver_init_f64(
+    memory: Out<c_void>,
+    bytes: u32,
     dimension: u32,
     max_vertices: u32,
     max_facets: u32,
-    bytes: *mut u32,
+    solver: Out<*mut qdist_solver>,
 ) -> qdist_status {
-    let query = || {
-        aligned(bytes)?;
-        let needed = match dimension {
-            2 => handle::bytes::<f64, 2>(max_vertices, max_facets),
-            3 => handle::bytes::<f64, 3>(max_vertices, max_facets),
-            4 => handle::bytes::<f64, 4>(max_vertices, max_facets),
-            5 => handle::bytes::<f64, 5>(max_vertices, max_facets),
-            6 => handle::bytes::<f64, 6>(max_vertices, max_facets),
-            _ => Err(QDIST_ERROR_DIMENSION),
-        }?;
-        // SAFETY: checked.
-        unsafe { bytes.write(needed) };
-        Ok(())
-    };
-    status(query())
-}
-
-/// Makes a solver of dimension 2 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
-/// which is that of the memory.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solver_init2_f64(
-    memory: *mut c_void,
-    bytes: u32,
-    max_vertices: u32,
-    max_facets: u32,
-    solver: *mut *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { handle::init::<f64, 2>(memory, bytes, max_vertices, max_facets, solver) })
-}
-
-/// The same in dimension 3.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solver_init3_f64(
-    memory: *mut c_void,
-    bytes: u32,
-    max_vertices: u32,
-    max_facets: u32,
-    solver: *mut *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { handle::init::<f64, 3>(memory, bytes, max_vertices, max_facets, solver) })
-}
-
-/// The same in dimension 4.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solver_init4_f64(
-    memory: *mut c_void,
-    bytes: u32,
-    max_vertices: u32,
-    max_facets: u32,
-    solver: *mut *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { handle::init::<f64, 4>(memory, bytes, max_vertices, max_facets, solver) })
-}
-
-/// The same in dimension 5.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solver_init5_f64(
-    memory: *mut c_void,
-    bytes: u32,
-    max_vertices: u32,
-    max_facets: u32,
-    solver: *mut *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { handle::init::<f64, 5>(memory, bytes, max_vertices, max_facets, solver) })
-}
-
-/// The same in dimension 6.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solver_init6_f64(
-    memory: *mut c_void,
-    bytes: u32,
-    max_vertices: u32,
-    max_facets: u32,
-    solver: *mut *mut qdist_solver,
-) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { handle::init::<f64, 6>(memory, bytes, max_vertices, max_facets, solver) })
+    status(handle::init::<f64>(memory, bytes, dimension, max_vertices, max_facets, solver))
 }

@@ -13,10 +13,14 @@
 //!       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
 //!   }
 
-use super::super::generic::{MAX_DIMENSION, aligned, dimension, dot, finite, first, known_size, padded, shared};
 use super::super::handle::qdist_solver;
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, overflow, qdist_status, status};
-use super::query::{Asked, qdist_options_f64, qdist_result_f64};
+use super::super::numbers::{MAX_DIMENSION, dimension, dot, finite, first, padded};
+use super::super::pointer::{In, Out, gaps};
+use super::super::status::{
+    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_STRUCT_SIZE, qdist_status, status,
+};
+use super::asked::Question;
+use super::query::{qdist_options_f64, qdist_result_f64};
 use super::sets::qdist_set_f64;
 use super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use qdist::Tracker;
@@ -39,45 +43,38 @@ pub struct qdist_tracker_f64 {
     pub directions: [[f64; 6]; 4],
 }
 
+gaps!(qdist_tracker_f64);
+
 /// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_tracker_init_f64(tracker: *mut qdist_tracker_f64, dimension: u32) -> qdist_status {
-    let fill = || {
-        aligned(tracker)?;
-        super::super::generic::dimension(dimension)?;
-        // SAFETY: checked.
-        unsafe { tracker.write(qdist_tracker_f64::new(dimension)) };
-        Ok(())
-    };
-    status(fill())
+pub extern "C" fn qdist_tracker_init_f64(tracker: Out<qdist_tracker_f64>, dimension: u32) -> qdist_status {
+    status(tracker.checked().and_then(|()| {
+        super::super::numbers::dimension(dimension)?;
+        tracker.put(qdist_tracker_f64::new(dimension))
+    }))
 }
 
 /// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
 /// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_tracker_lower_after_f64(
-    tracker: *const qdist_tracker_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_tracker_lower_after_f64(
+    tracker: In<qdist_tracker_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    lower: *mut f64,
+    lower: Out<f64>,
 ) -> qdist_status {
     let ask = || {
-        aligned(lower)?;
+        lower.checked()?;
         finite(&[moved])?;
-        // SAFETY: what the header asks of the caller.
-        let tracker = unsafe { shared(tracker) }?;
-        // SAFETY: what the header asks of the caller.
-        let found = match tracker.dimension {
-            2 => unsafe { tracker.lower_after::<2>(q, moved) },
-            3 => unsafe { tracker.lower_after::<3>(q, moved) },
-            4 => unsafe { tracker.lower_after::<4>(q, moved) },
-            5 => unsafe { tracker.lower_after::<5>(q, moved) },
-            6 => unsafe { tracker.lower_after::<6>(q, moved) },
+        let tracker = tracker.get()?;
+        lower.put(match tracker.dimension {
+            2 => tracker.lower_after::<2>(q, moved),
+            3 => tracker.lower_after::<3>(q, moved),
+            4 => tracker.lower_after::<4>(q, moved),
+            5 => tracker.lower_after::<5>(q, moved),
+            6 => tracker.lower_after::<6>(q, moved),
             _ => Err(QDIST_ERROR_DIMENSION),
-        }?;
-        // SAFETY: checked.
-        unsafe { lower.write(found) };
-        Ok(())
+        }?)
     };
     status(ask())
 }
@@ -88,77 +85,72 @@ pub unsafe extern "C" fn qdist_tracker_lower_after_f64(
 /// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
 /// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve_warm2_f64(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_solve_warm2_f64(
+    solver: Out<qdist_solver>,
+    tracker: Out<qdist_tracker_f64>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve_warm::<2>(solver, tracker, a, q, moved, options, result) })
+    status(solve_warm::<2>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
 /// The same in dimension 3.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve_warm3_f64(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_solve_warm3_f64(
+    solver: Out<qdist_solver>,
+    tracker: Out<qdist_tracker_f64>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve_warm::<3>(solver, tracker, a, q, moved, options, result) })
+    status(solve_warm::<3>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
 /// The same in dimension 4.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve_warm4_f64(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_solve_warm4_f64(
+    solver: Out<qdist_solver>,
+    tracker: Out<qdist_tracker_f64>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve_warm::<4>(solver, tracker, a, q, moved, options, result) })
+    status(solve_warm::<4>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
 /// The same in dimension 5.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve_warm5_f64(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_solve_warm5_f64(
+    solver: Out<qdist_solver>,
+    tracker: Out<qdist_tracker_f64>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve_warm::<5>(solver, tracker, a, q, moved, options, result) })
+    status(solve_warm::<5>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
 /// The same in dimension 6.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_solve_warm6_f64(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
+pub extern "C" fn qdist_solve_warm6_f64(
+    solver: Out<qdist_solver>,
+    tracker: Out<qdist_tracker_f64>,
+    a: In<qdist_set_f64>,
+    q: In<qdist_unit_f64>,
     moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
+    options: In<qdist_options_f64>,
+    result: Out<qdist_result_f64>,
 ) -> qdist_status {
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { solve_warm::<6>(solver, tracker, a, q, moved, options, result) })
+    status(solve_warm::<6>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
 impl qdist_tracker_f64 {
@@ -173,7 +165,9 @@ impl qdist_tracker_f64 {
 
     /// As the solver knows it. Directions are brought to unit length, which bounds rely on.
     fn checked<const N: usize>(&self) -> Check<Tracker<f64, N>> {
-        known_size(self.struct_size, size_of::<Self>())?;
+        if self.struct_size as usize != size_of::<Self>() {
+            return Err(QDIST_ERROR_STRUCT_SIZE);
+        }
         if dimension(self.dimension)? != N {
             return Err(QDIST_ERROR_DIMENSION);
         }
@@ -192,41 +186,22 @@ impl qdist_tracker_f64 {
         Ok(tracker)
     }
 
-    /// # Safety
-    /// What the header asks of the caller of `qdist_solve`, for `q`.
-    unsafe fn lower_after<const N: usize>(&self, q: *const qdist_unit_f64, moved: f64) -> Check<f64> {
+    fn lower_after<const N: usize>(&self, q: In<qdist_unit_f64>, moved: f64) -> Check<f64> {
         let tracker = self.checked::<N>()?;
-        // SAFETY: the caller's promise.
-        let q = unsafe { CheckedUnit::new::<N>(q) }?;
-        Ok(tracker.lower_after(moved, q.unit()))
+        Ok(tracker.lower_after(moved, CheckedUnit::new::<N>(q)?.unit()))
     }
 }
 
-/// # Safety
-/// What the header asks of the caller of `qdist_solve_warm`.
-unsafe fn solve_warm<const N: usize>(
-    solver: *mut qdist_solver,
-    tracker: *mut qdist_tracker_f64,
-    a: *const qdist_set_f64,
-    q: *const qdist_unit_f64,
-    moved: f64,
-    options: *const qdist_options_f64,
-    result: *mut qdist_result_f64,
-) -> Check {
+fn solve_warm<const N: usize>(question: &Question, tracker: Out<qdist_tracker_f64>, moved: f64) -> Check {
     finite(&[moved])?;
-    // SAFETY: the caller's promise.
-    let mut memory = unsafe { shared(tracker) }?.checked::<N>()?;
-    // SAFETY: the caller's promise.
-    let mut asked = unsafe { Asked::<N>::new(solver, a, q, options, result) }?;
-    let Asked { solver, a, q, options, deadline, .. } = &mut asked;
-    let answer = deadline.during(|interrupt| solver.solve_warm(&mut memory, *a, q.unit(), moved, options, interrupt));
-    overflow(answer.failure)?;
+    let mut memory = tracker.get()?.checked::<N>()?;
+    let answered = question
+        .ask::<N>(|solver, a, q, options, interrupt| solver.solve_warm(&mut memory, a, q, moved, options, interrupt))?;
     let mut noted = qdist_tracker_f64::new(N as u32);
     noted.lower = memory.lower;
     for (to, from) in noted.directions.iter_mut().zip(&memory.directions) {
         *to = padded(from.iter().copied());
     }
-    // SAFETY: checked.
-    unsafe { tracker.write(noted) };
-    asked.conclude(&answer)
+    tracker.put(noted)?;
+    question.conclude(answered)
 }

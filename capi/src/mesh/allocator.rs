@@ -4,7 +4,7 @@
 //! malloc and free of the system, or yours. It is chosen for the whole process, once, since memory must go back where it came from.
 //! (A static library has a heap interface of its own: your program's malloc is not replaced.)
 
-use super::super::generic::shared;
+use super::super::pointer::In;
 use super::super::status::{Check, QDIST_ERROR_ALLOCATOR, QDIST_ERROR_NULL, qdist_status, status};
 use core::ffi::c_void;
 use core::ptr::null_mut;
@@ -27,15 +27,14 @@ pub struct qdist_allocator {
 /// Sets the allocator of the process. The struct is not copied: it must stay valid and unchanged until the process ends. Once only, and before
 /// the first mesh: afterwards QDIST_ERROR_ALLOCATOR.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_set_allocator(allocator: *const qdist_allocator) -> qdist_status {
+pub extern "C" fn qdist_mesh_set_allocator(allocator: In<qdist_allocator>) -> qdist_status {
     let set = || -> Check {
-        // SAFETY: what the header asks of the caller.
-        let functions = unsafe { shared(allocator) }?;
+        let functions = allocator.get()?;
         if functions.alloc.is_none() || functions.free.is_none() {
             return Err(QDIST_ERROR_NULL);
         }
         CHOSEN
-            .compare_exchange(null_mut(), allocator.cast_mut(), Ordering::AcqRel, Ordering::Acquire)
+            .compare_exchange(null_mut(), allocator.address().cast_mut(), Ordering::AcqRel, Ordering::Acquire)
             .map_err(|_| QDIST_ERROR_ALLOCATOR)?;
         Ok(())
     };

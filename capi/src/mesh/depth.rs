@@ -4,14 +4,15 @@
 //! certainty, so the answer is a bracket: no free pose is nearer than `lower`, and `pose` is free, proved by the solid test, at the
 //! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
-use super::super::generic::{aligned, array, finite, gaps, known_size, put, shared};
+use super::super::numbers::finite;
+use super::super::pointer::{Defaults, In, Out, gaps, versioned};
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
 use super::guard::guard;
 use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
 use super::model::qdist_mesh_mass;
 use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
 use core::ffi::{c_char, c_void};
-use core::ptr::{null, null_mut};
+use core::ptr::null_mut;
 use qdist::mesh::{DepthOptions, Effort, MeshDepth, Outcome, Progress};
 use qdist::nalgebra::Isometry3;
 
@@ -123,12 +124,12 @@ pub struct qdist_mesh_options {
     /// The query ends when upper - lower <= relative * upper; 0 or more, default 1e-3.
     pub relative: f64,
     /// Poses to begin with, free or not: the last frame's answer, the answer for another metric, a guess. NULL if pose_count is 0.
-    pub poses: *const qdist_mesh_pose,
+    pub poses: In<qdist_mesh_pose>,
     /// QDIST_MESH_SIGMA: a distribution of mass to average over in place of A's own volume, in A's frame; A need not be a solid
     /// then. No lower bound is known for it: `lower` is 0. NULL (default): A's own. The volume only scales the inertia.
-    pub mass: *const qdist_mesh_mass,
+    pub mass: In<qdist_mesh_mass>,
     /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
-    pub own: *const qdist_mesh_own_metric,
+    pub own: In<qdist_mesh_own_metric>,
     /// NULL (default): nothing is called.
     pub watch: qdist_mesh_watch,
     /// For `watch`.
@@ -136,6 +137,27 @@ pub struct qdist_mesh_options {
 }
 
 gaps!(qdist_mesh_options, watch_user..);
+versioned!(qdist_mesh_options);
+
+impl Defaults for qdist_mesh_options {
+    fn defaults() -> Self {
+        let usual = DepthOptions::default();
+        qdist_mesh_options {
+            struct_size: size_of::<qdist_mesh_options>() as u32,
+            metric: QDIST_MESH_DISP,
+            effort: QDIST_MESH_DEFAULT,
+            pose_count: 0,
+            seed: usual.seed,
+            max_queries: usual.max_queries,
+            relative: usual.relative,
+            poses: In::NULL,
+            mass: In::NULL,
+            own: In::NULL,
+            watch: None,
+            watch_user: null_mut(),
+        }
+    }
+}
 
 /// An answer: lower <= depth <= upper.
 #[repr(C)]
@@ -164,6 +186,9 @@ pub struct qdist_mesh_depth {
     /// Distance queries that it took.
     pub distance_queries: u64,
 }
+
+gaps!(qdist_mesh_depth);
+versioned!(qdist_mesh_depth);
 
 impl qdist_mesh_depth {
     pub(super) fn new(found: &MeshDepth) -> Self {
@@ -194,29 +219,8 @@ impl qdist_mesh_depth {
 
 /// Writes the defaults, struct_size included.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_options_default(options: *mut qdist_mesh_options) -> qdist_status {
-    let write = || {
-        aligned(options)?;
-        let usual = DepthOptions::default();
-        let made = qdist_mesh_options {
-            struct_size: size_of::<qdist_mesh_options>() as u32,
-            metric: QDIST_MESH_DISP,
-            effort: QDIST_MESH_DEFAULT,
-            pose_count: 0,
-            seed: usual.seed,
-            max_queries: usual.max_queries,
-            relative: usual.relative,
-            poses: null(),
-            mass: null(),
-            own: null(),
-            watch: None,
-            watch_user: null_mut(),
-        };
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { put(options, made) };
-        Ok(())
-    };
-    status(write())
+pub extern "C" fn qdist_mesh_options_default(options: Out<qdist_mesh_options>) -> qdist_status {
+    status(options.put(qdist_mesh_options::defaults()))
 }
 
 /// The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
@@ -224,19 +228,15 @@ pub unsafe extern "C" fn qdist_mesh_options_default(options: *mut qdist_mesh_opt
 /// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
 /// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_depth(
-    pair: *mut qdist_mesh_pair,
-    pose: *const qdist_mesh_pose,
-    options: *const qdist_mesh_options,
-    depth: *mut qdist_mesh_depth,
+pub extern "C" fn qdist_mesh_pair_depth(
+    pair: Out<qdist_mesh_pair>,
+    pose: In<qdist_mesh_pose>,
+    options: In<qdist_mesh_options>,
+    depth: Out<qdist_mesh_depth>,
 ) -> qdist_status {
     guard(|| {
-        aligned(depth)?;
-        // SAFETY: what the header asks of the caller.
-        let (mut pair, pose, query) = unsafe {
-            known_size((&raw const (*depth).struct_size).read(), size_of::<qdist_mesh_depth>())?;
-            (exclusive(pair)?, shared(pose)?.checked()?, Query::new(options)?)
-        };
+        depth.known()?;
+        let (mut pair, pose, query) = (exclusive(&pair)?, pose.get()?.checked()?, Query::new(options)?);
         let model = pair.a.clone();
         let metric = query.metric.of(&model)?;
         let found = pair.ask(|solver| {
@@ -244,9 +244,7 @@ pub unsafe extern "C" fn qdist_mesh_pair_depth(
             let watch = query.watch.is_some().then_some(&mut watch as &mut dyn FnMut(&Progress) -> bool);
             solver.depth(&pose, metric, &query.options(), watch)
         })?;
-        // SAFETY: checked.
-        unsafe { depth.write(qdist_mesh_depth::new(&found)) };
-        Ok(())
+        depth.put_version(qdist_mesh_depth::new(&found))
     })
 }
 
@@ -263,40 +261,18 @@ struct Query {
 }
 
 impl Query {
-    /// # Safety
-    /// If not NULL and aligned, `options` and what it points to are valid for the life of the value.
-    unsafe fn new(options: *const qdist_mesh_options) -> Check<Query> {
-        if options.is_null() {
-            let usual = DepthOptions::default();
-            return Ok(Query {
-                metric: Chosen::Disp,
-                effort: usual.effort,
-                seed: usual.seed,
-                max_queries: usual.max_queries,
-                relative: usual.relative,
-                poses: Vec::new(),
-                watch: None,
-                user: null_mut(),
-            });
-        }
-        aligned(options)?;
-        // SAFETY: the caller's promise; a struct of another version may be shorter, so the size is looked at first.
-        let options = unsafe {
-            known_size((&raw const (*options).struct_size).read(), size_of::<qdist_mesh_options>())?;
-            shared(options)?
-        };
+    fn new(options: In<qdist_mesh_options>) -> Check<Query> {
+        let options = if options.is_null() { qdist_mesh_options::defaults() } else { options.version()? };
         let effort = effort(options.effort)?;
         finite(&[options.relative])?;
         if options.relative < 0.0 {
             return Err(QDIST_ERROR_ARGUMENT);
         }
-        // SAFETY: the caller's promise.
-        let metric = unsafe { Chosen::new(options.metric, options.mass, options.own) }?;
+        let metric = Chosen::new(options.metric, options.mass, options.own)?;
         let poses = match options.pose_count {
             0 => Vec::new(),
             count => {
-                // SAFETY: the caller's promise.
-                let list = unsafe { array(options.poses, Some(count as usize)) }?;
+                let list = options.poses.array(Some(count as usize))?;
                 list.iter().map(qdist_mesh_pose::checked).collect::<Check<_>>()?
             }
         };
@@ -332,7 +308,7 @@ impl Query {
             fraction: progress.fraction,
             queries: progress.queries,
         };
-        // SAFETY: the promise of `new`.
+        // SAFETY: the header: `watch` may be called with `watch_user` during the call.
         self.watch.is_none_or(|watch| unsafe { watch(self.user, &told) } == 0)
     }
 }

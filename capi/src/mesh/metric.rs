@@ -2,7 +2,8 @@
 //!
 //! How far is one pose of A from another? A length, in each case, that depends on A's motion only.
 
-use super::super::generic::{aligned, coordinates, finite, known_size, shared};
+use super::super::numbers::{coordinates, finite};
+use super::super::pointer::{In, versioned};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_NONFINITE, QDIST_ERROR_NULL,
 };
@@ -67,6 +68,8 @@ pub struct qdist_mesh_own_metric {
     pub user: *mut c_void,
 }
 
+versioned!(qdist_mesh_own_metric);
+
 /// What was chosen, checked.
 pub(super) enum Chosen {
     Disp,
@@ -76,28 +79,17 @@ pub(super) enum Chosen {
 }
 
 impl Chosen {
-    /// # Safety
-    /// What `mass` and `own` point to, if not NULL and aligned, is valid; the functions of `own` may be called with its `user` for the
-    /// life of the value.
-    pub(super) unsafe fn new(
+    /// The header: the functions of `own` may be called with its `user` during the call.
+    pub(super) fn new(
         metric: qdist_mesh_metric,
-        mass: *const qdist_mesh_mass,
-        own: *const qdist_mesh_own_metric,
+        mass: In<qdist_mesh_mass>,
+        own: In<qdist_mesh_own_metric>,
     ) -> Check<Chosen> {
         match metric {
             QDIST_MESH_DISP => Ok(Chosen::Disp),
             QDIST_MESH_SIGMA if mass.is_null() => Ok(Chosen::Sigma),
-            // SAFETY: the caller's promise.
-            QDIST_MESH_SIGMA => Weighted::new(unsafe { shared(mass) }?).map(Chosen::Weighted),
-            QDIST_MESH_OWN => {
-                aligned(own)?;
-                // SAFETY: the caller's promise; a struct of another version may be shorter, so the size is looked at first.
-                let own = unsafe {
-                    known_size((&raw const (*own).struct_size).read(), size_of::<qdist_mesh_own_metric>())?;
-                    shared(own)?
-                };
-                Own::new(own).map(Chosen::Own)
-            }
+            QDIST_MESH_SIGMA => Weighted::new(mass.get()?).map(Chosen::Weighted),
+            QDIST_MESH_OWN => Own::new(own.current()?).map(Chosen::Own),
             _ => Err(QDIST_ERROR_ARGUMENT),
         }
     }

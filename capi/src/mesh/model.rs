@@ -5,7 +5,7 @@
 //! seen from outside, the mesh bounds a solid and is treated as one: what lies inside collides. Otherwise it is a surface without an
 //! inside (a polygon soup), and queries see the surface only.
 
-use super::super::generic::{aligned, array, known_size, shared};
+use super::super::pointer::{In, Out, gaps, versioned};
 use super::super::status::{
     QDIST_ERROR_CAPACITY, QDIST_ERROR_MESH_COLLINEAR, QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_INDEX,
     QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_MESH_VERTEX, qdist_status,
@@ -61,6 +61,9 @@ pub struct qdist_mesh_report {
     pub flat_components: u32,
 }
 
+gaps!(qdist_mesh_report);
+versioned!(qdist_mesh_report);
+
 /// Volume integrals at density 1.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -73,35 +76,33 @@ pub struct qdist_mesh_mass {
     pub inertia: [f64; 9],
 }
 
+gaps!(qdist_mesh_mass);
+
 /// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
 /// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`make figures`).
 ///
 /// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
 /// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_create(
-    xyz: *const f64,
+pub extern "C" fn qdist_mesh_create(
+    xyz: In<f64>,
     vertex_count: u32,
-    triangles: *const u32,
+    triangles: In<u32>,
     triangle_count: u32,
-    which: *mut u32,
-    mesh: *mut *mut qdist_mesh,
+    mesh: Out<*mut qdist_mesh>,
+    which: Out<u32>,
 ) -> qdist_status {
     guard(|| {
-        aligned(mesh)?;
-        if !which.is_null() {
-            aligned(which)?;
-        }
+        mesh.checked()?;
+        which.optional()?;
         if triangle_count == 0 {
             return Err(QDIST_ERROR_MESH_EMPTY);
         }
         let times_three = |n: u32| (n as usize).checked_mul(3);
-        // SAFETY: what the header asks of the caller.
-        let triangles = unsafe { array(triangles, times_three(triangle_count)) }?;
+        let triangles = triangles.array(times_three(triangle_count))?;
         let xyz = match vertex_count {
             0 => &[],
-            // SAFETY: what the header asks of the caller.
-            _ => unsafe { array(xyz, times_three(vertex_count)) }?,
+            _ => xyz.array(times_three(vertex_count))?,
         };
         let (vertices, triangles) = (xyz.as_chunks::<3>().0, triangles.as_chunks::<3>().0);
         let model = Model::new(vertices, triangles).map_err(|error| {
@@ -109,15 +110,12 @@ pub unsafe extern "C" fn qdist_mesh_create(
             if let Some(place) = place
                 && !which.is_null()
             {
-                // SAFETY: aligned, and what the header asks of the caller.
-                unsafe { which.write(place as u32) };
+                // (Aligned: looked at before.)
+                which.put(place as u32).ok();
             }
             status
         })?;
-        let made = Box::new(qdist_mesh { model: Arc::new(model) });
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { mesh.write(Box::into_raw(made)) };
-        Ok(())
+        mesh.put(Box::into_raw(Box::new(qdist_mesh { model: Arc::new(model) })))
     })
 }
 
@@ -137,38 +135,28 @@ fn from_model(error: ModelError) -> (qdist_status, Option<usize>) {
 /// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
 /// rounding cannot tell it, or a coordinate is above 1e50.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_certify(mesh: *const qdist_mesh, certified: *mut *mut qdist_mesh) -> qdist_status {
+pub extern "C" fn qdist_mesh_certify(mesh: In<qdist_mesh>, certified: Out<*mut qdist_mesh>) -> qdist_status {
     guard(|| {
-        aligned(certified)?;
-        // SAFETY: what the header asks of the caller.
-        let model = unsafe { Model::clone(&shared(mesh)?.model) };
+        certified.checked()?;
+        let model = Model::clone(&mesh.get()?.model);
         let model = model.with_pieces(&BuildOptions::default()).map_err(|_| QDIST_ERROR_MESH_NOT_SOLID)?;
-        let made = Box::new(qdist_mesh { model: Arc::new(model) });
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { certified.write(Box::into_raw(made)) };
-        Ok(())
+        certified.put(Box::into_raw(Box::new(qdist_mesh { model: Arc::new(model) })))
     })
 }
 
 /// Frees a mesh; NULL is nothing. Pairs of it stay valid: they share what they need, and the last one frees it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_free(mesh: *mut qdist_mesh) {
-    if !mesh.is_null() {
-        // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
-        drop(unsafe { Box::from_raw(mesh) });
-    }
+pub extern "C" fn qdist_mesh_free(mesh: Out<qdist_mesh>) {
+    // SAFETY: the header: from qdist_mesh_create or qdist_mesh_certify, once.
+    drop(unsafe { mesh.boxed() });
 }
 
 /// What is wrong with the mesh, and whether it bounds a solid. Intersections of the mesh with itself are not looked for. O(1).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_check(mesh: *const qdist_mesh, report: *mut qdist_mesh_report) -> qdist_status {
+pub extern "C" fn qdist_mesh_check(mesh: In<qdist_mesh>, report: Out<qdist_mesh_report>) -> qdist_status {
     guard(|| {
-        aligned(report)?;
-        // SAFETY: what the header asks of the caller.
-        let mesh = unsafe {
-            known_size((&raw const (*report).struct_size).read(), size_of::<qdist_mesh_report>())?;
-            shared(mesh)?.model.mesh()
-        };
+        report.known()?;
+        let mesh = mesh.get()?.model.mesh();
         let found = mesh.report();
         let edge = |list: &[u32]| {
             let edge = list.first().and_then(|&e| mesh.topology().edges().get(e as usize));
@@ -176,7 +164,7 @@ pub unsafe extern "C" fn qdist_mesh_check(mesh: *const qdist_mesh, report: *mut 
         };
         let first = |list: &[u32]| list.first().copied().unwrap_or(QDIST_MESH_NONE);
         let count = |list: &[u32]| list.len() as u32;
-        let made = qdist_mesh_report {
+        report.put_version(qdist_mesh_report {
             struct_size: size_of::<qdist_mesh_report>() as u32,
             solid: found.solid.into(),
             clean: found.is_clean().into(),
@@ -195,20 +183,16 @@ pub unsafe extern "C" fn qdist_mesh_check(mesh: *const qdist_mesh, report: *mut 
             first_unreferenced_vertex: first(&found.unreferenced_vertices),
             inverted_components: count(&found.inverted_components),
             flat_components: count(&found.flat_components),
-        };
-        // SAFETY: checked.
-        unsafe { report.write(made) };
-        Ok(())
+        })
     })
 }
 
 /// Volume, centre of mass and inertia of the solid, or QDIST_ERROR_MESH_NOT_SOLID. Allocates for the time of the call; O(n log n).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_integrate(mesh: *const qdist_mesh, mass: *mut qdist_mesh_mass) -> qdist_status {
+pub extern "C" fn qdist_mesh_integrate(mesh: In<qdist_mesh>, mass: Out<qdist_mesh_mass>) -> qdist_status {
     guard(|| {
-        aligned(mass)?;
-        // SAFETY: what the header asks of the caller.
-        let model = unsafe { &shared(mesh)?.model };
+        mass.checked()?;
+        let model = &mesh.get()?.model;
         if model.sigma().is_none() {
             return Err(QDIST_ERROR_MESH_NOT_SOLID);
         }
@@ -217,9 +201,6 @@ pub unsafe extern "C" fn qdist_mesh_integrate(mesh: *const qdist_mesh, mass: *mu
         let mut inertia = [0.0; 9];
         // The tensor is symmetric: rows are columns.
         inertia.copy_from_slice(found.inertia.as_slice());
-        let made = qdist_mesh_mass { volume: found.volume, centre: found.centre.coords.into(), inertia };
-        // SAFETY: checked.
-        unsafe { mass.write(made) };
-        Ok(())
+        mass.put(qdist_mesh_mass { volume: found.volume, centre: found.centre.coords.into(), inertia })
     })
 }

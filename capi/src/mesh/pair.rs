@@ -3,7 +3,8 @@
 //! Two meshes and the memory that their queries reuse. A moves, B rests. A pair serves one call at a time; make one per thread, meshes are
 //! shared.
 
-use super::super::generic::{aligned, coordinates, shared};
+use super::super::numbers::coordinates;
+use super::super::pointer::{In, Out, gaps};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, QDIST_ERROR_NONFINITE, QDIST_ERROR_ROTATION, qdist_status,
 };
@@ -52,12 +53,8 @@ impl Pair {
 }
 
 /// A pair of the caller, for one call.
-///
-/// # Safety
-/// If not NULL, it is from qdist_mesh_pair_create, and not freed for the life `'a`.
-pub(super) unsafe fn exclusive<'a>(pair: *mut qdist_mesh_pair) -> Check<Taken<'a, Pair>> {
-    // SAFETY: the caller's promise.
-    unsafe { shared(pair.cast_const()) }?.0.take()
+pub(super) fn exclusive(pair: &Out<qdist_mesh_pair>) -> Check<Taken<'_, Pair>> {
+    pair.get()?.0.take()
 }
 
 /// Where A is, in the frame of B: x_B = R x_A + t.
@@ -139,6 +136,8 @@ impl qdist_mesh_distance {
     }
 }
 
+gaps!(qdist_mesh_distance);
+
 /// Two features at a local minimum of their distance, in the frame of B.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -167,69 +166,60 @@ impl qdist_mesh_contact {
     }
 }
 
+gaps!(qdist_mesh_contact);
+
 /// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_create(
-    a: *const qdist_mesh,
-    b: *const qdist_mesh,
-    pair: *mut *mut qdist_mesh_pair,
+pub extern "C" fn qdist_mesh_pair_create(
+    a: In<qdist_mesh>,
+    b: In<qdist_mesh>,
+    pair: Out<*mut qdist_mesh_pair>,
 ) -> qdist_status {
     guard(|| {
-        aligned(pair)?;
-        // SAFETY: what the header asks of the caller.
-        let (a, b) = unsafe { (shared(a)?, shared(b)?) };
-        let made = Box::new(qdist_mesh_pair(Exclusive::new(Pair::new(a.model.clone(), b.model.clone()))));
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { pair.write(Box::into_raw(made)) };
-        Ok(())
+        pair.checked()?;
+        let (a, b) = (a.get()?.model.clone(), b.get()?.model.clone());
+        pair.put(Box::into_raw(Box::new(qdist_mesh_pair(Exclusive::new(Pair::new(a, b))))))
     })
 }
 
 /// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_free(pair: *mut qdist_mesh_pair) {
-    // SAFETY: what the header asks of the caller.
-    if !pair.is_null() && unsafe { exclusive(pair) }.is_ok() {
-        // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
-        drop(unsafe { Box::from_raw(pair) });
+pub extern "C" fn qdist_mesh_pair_free(pair: Out<qdist_mesh_pair>) {
+    if exclusive(&pair).is_ok() {
+        // SAFETY: the header: from qdist_mesh_pair_create, once.
+        drop(unsafe { pair.boxed() });
     }
 }
 
 /// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
 /// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_collides(
-    pair: *mut qdist_mesh_pair,
-    pose: *const qdist_mesh_pose,
-    collides: *mut u32,
+pub extern "C" fn qdist_mesh_pair_collides(
+    pair: Out<qdist_mesh_pair>,
+    pose: In<qdist_mesh_pose>,
+    collides: Out<u32>,
 ) -> qdist_status {
     guard(|| {
-        aligned(collides)?;
-        // SAFETY: what the header asks of the caller.
-        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        collides.checked()?;
+        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
         let found = pair.ask(|solver| solver.pair().collides(&pose))?;
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { collides.write(found.into()) };
-        Ok(())
+        collides.put(found.into())
     })
 }
 
 /// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
 /// microseconds (`make figures`), and less where the pose has changed little.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_distance(
-    pair: *mut qdist_mesh_pair,
-    pose: *const qdist_mesh_pose,
-    distance: *mut qdist_mesh_distance,
+pub extern "C" fn qdist_mesh_pair_distance(
+    pair: Out<qdist_mesh_pair>,
+    pose: In<qdist_mesh_pose>,
+    distance: Out<qdist_mesh_distance>,
 ) -> qdist_status {
     guard(|| {
-        aligned(distance)?;
-        // SAFETY: what the header asks of the caller.
-        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        distance.checked()?;
+        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
         let found = pair.ask(|solver| solver.pair().distance(&pose))?;
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { distance.write(qdist_mesh_distance::new(&found)) };
-        Ok(())
+        distance.put(qdist_mesh_distance::new(&found))
     })
 }
 
@@ -240,21 +230,20 @@ pub unsafe extern "C" fn qdist_mesh_pair_distance(
 /// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
 /// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_pair_contacts(
-    pair: *mut qdist_mesh_pair,
-    pose: *const qdist_mesh_pose,
+pub extern "C" fn qdist_mesh_pair_contacts(
+    pair: Out<qdist_mesh_pair>,
+    pose: In<qdist_mesh_pose>,
     margin: f64,
-    contacts: *mut qdist_mesh_contact,
+    contacts: Out<qdist_mesh_contact>,
     capacity: u32,
-    count: *mut u32,
+    count: Out<u32>,
 ) -> qdist_status {
     guard(|| {
-        aligned(count)?;
+        count.checked()?;
         if capacity > 0 {
-            aligned(contacts)?;
+            contacts.checked()?;
         }
-        // SAFETY: what the header asks of the caller.
-        let (mut pair, pose) = unsafe { (exclusive(pair)?, shared(pose)?.checked()?) };
+        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
         if !margin.is_finite() {
             return Err(QDIST_ERROR_NONFINITE);
         }
@@ -264,11 +253,9 @@ pub unsafe extern "C" fn qdist_mesh_pair_contacts(
         let mut found = core::mem::take(&mut pair.contacts);
         pair.ask(|solver| solver.pair().contacts(&pose, margin, &mut found))?;
         for (place, contact) in found.iter().take(capacity as usize).enumerate() {
-            // SAFETY: checked, and the caller's array has room for `capacity` contacts.
-            unsafe { contacts.add(place).write(qdist_mesh_contact::new(contact)) };
+            contacts.put_at(place, qdist_mesh_contact::new(contact))?;
         }
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { count.write(found.len() as u32) };
+        count.put(found.len() as u32)?;
         pair.contacts = found;
         Ok(())
     })

@@ -17,7 +17,8 @@
 //! It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
 //! qdist_mesh_pair_contacts of another pair of the same meshes.
 
-use super::super::generic::{aligned, finite, flag, gaps, known_size, put, shared};
+use super::super::numbers::{finite, flag};
+use super::super::pointer::{Defaults, In, Out, gaps, versioned};
 use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, qdist_status, status};
 use super::depth::{QDIST_MESH_FAST, effort, qdist_mesh_depth, qdist_mesh_effort};
 use super::guard::{Exclusive, Taken, caught, guard};
@@ -25,7 +26,7 @@ use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_m
 use super::model::{qdist_mesh, qdist_mesh_mass};
 use super::pair::qdist_mesh_pose;
 use core::ffi::c_void;
-use core::ptr::{null, null_mut};
+use core::ptr::null_mut;
 use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
 use std::sync::Arc;
 
@@ -65,12 +66,8 @@ impl Tracker {
 }
 
 /// A tracker of the caller, for one call.
-///
-/// # Safety
-/// If not NULL, it is from qdist_mesh_tracker_create, and not freed for the life `'a`.
-unsafe fn exclusive<'a>(tracker: *mut qdist_mesh_tracker) -> Check<Taken<'a, Tracker>> {
-    // SAFETY: the caller's promise.
-    unsafe { shared(tracker.cast_const()) }?.0.take()
+fn exclusive(tracker: &Out<qdist_mesh_tracker>) -> Check<Taken<'_, Tracker>> {
+    tracker.get()?.0.take()
 }
 
 /// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
@@ -98,9 +95,9 @@ pub struct qdist_mesh_budget {
     /// With how much effort; default QDIST_MESH_FAST.
     pub effort: qdist_mesh_effort,
     /// QDIST_MESH_SIGMA: as `mass` of qdist_mesh_options. NULL (default): A's own.
-    pub mass: *const qdist_mesh_mass,
+    pub mass: In<qdist_mesh_mass>,
     /// QDIST_MESH_OWN: your metric. Else NULL (default), or not looked at.
-    pub own: *const qdist_mesh_own_metric,
+    pub own: In<qdist_mesh_own_metric>,
     /// NULL (default): there is no clock.
     pub late: qdist_mesh_late,
     /// For `late`.
@@ -109,30 +106,31 @@ pub struct qdist_mesh_budget {
 
 gaps!(qdist_mesh_budget, effort..mass, late_user..);
 
-/// Writes the defaults, struct_size included.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_budget_default(budget: *mut qdist_mesh_budget) -> qdist_status {
-    let write = || {
-        aligned(budget)?;
+versioned!(qdist_mesh_budget);
+
+impl Defaults for qdist_mesh_budget {
+    fn defaults() -> Self {
         let usual = Budget::default();
-        let made = qdist_mesh_budget {
+        qdist_mesh_budget {
             struct_size: size_of::<qdist_mesh_budget>() as u32,
             metric: QDIST_MESH_DISP,
             max_queries: usual.max_queries,
             relative: usual.relative,
             probes: usual.probes,
-            certify: usual.certificate.is_some().into(),
+            certify: usual.certificate.is_some() as u32,
             effort: QDIST_MESH_FAST,
-            mass: null(),
-            own: null(),
+            mass: In::NULL,
+            own: In::NULL,
             late: None,
             late_user: null_mut(),
-        };
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { put(budget, made) };
-        Ok(())
-    };
-    status(write())
+        }
+    }
+}
+
+/// Writes the defaults, struct_size included.
+#[unsafe(no_mangle)]
+pub extern "C" fn qdist_mesh_budget_default(budget: Out<qdist_mesh_budget>) -> qdist_status {
+    status(budget.put(qdist_mesh_budget::defaults()))
 }
 
 /// The caller's budget, checked.
@@ -144,19 +142,9 @@ struct Tick {
 }
 
 impl Tick {
-    /// # Safety
-    /// If not NULL and aligned, `budget` and what it points to are valid for the life of the value.
-    unsafe fn new(budget: *const qdist_mesh_budget) -> Check<Tick> {
-        if budget.is_null() {
-            return Ok(Tick { metric: Chosen::Disp, budget: Budget::default(), late: None, user: null_mut() });
-        }
-        aligned(budget)?;
-        // SAFETY: the caller's promise; a struct of another version may be shorter, so the size is looked at first.
-        let (budget, metric) = unsafe {
-            known_size((&raw const (*budget).struct_size).read(), size_of::<qdist_mesh_budget>())?;
-            let budget = shared(budget)?;
-            (budget, Chosen::new(budget.metric, budget.mass, budget.own)?)
-        };
+    fn new(budget: In<qdist_mesh_budget>) -> Check<Tick> {
+        let budget = if budget.is_null() { qdist_mesh_budget::defaults() } else { budget.version()? };
+        let metric = Chosen::new(budget.metric, budget.mass, budget.own)?;
         finite(&[budget.relative])?;
         if budget.relative < 0.0 {
             return Err(QDIST_ERROR_ARGUMENT);
@@ -174,29 +162,24 @@ impl Tick {
 
 /// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_tracker_create(
-    a: *const qdist_mesh,
-    b: *const qdist_mesh,
-    tracker: *mut *mut qdist_mesh_tracker,
+pub extern "C" fn qdist_mesh_tracker_create(
+    a: In<qdist_mesh>,
+    b: In<qdist_mesh>,
+    tracker: Out<*mut qdist_mesh_tracker>,
 ) -> qdist_status {
     guard(|| {
-        aligned(tracker)?;
-        // SAFETY: what the header asks of the caller.
-        let (a, b) = unsafe { (shared(a)?, shared(b)?) };
-        let made = Box::new(qdist_mesh_tracker(Exclusive::new(Tracker::new(a.model.clone(), b.model.clone()))));
-        // SAFETY: checked, and what the header asks of the caller.
-        unsafe { tracker.write(Box::into_raw(made)) };
-        Ok(())
+        tracker.checked()?;
+        let (a, b) = (a.get()?.model.clone(), b.get()?.model.clone());
+        tracker.put(Box::into_raw(Box::new(qdist_mesh_tracker(Exclusive::new(Tracker::new(a, b))))))
     })
 }
 
 /// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_tracker_free(tracker: *mut qdist_mesh_tracker) {
-    // SAFETY: what the header asks of the caller.
-    if !tracker.is_null() && unsafe { exclusive(tracker) }.is_ok() {
-        // SAFETY: from `Box::into_raw`, and what the header asks of the caller.
-        drop(unsafe { Box::from_raw(tracker) });
+pub extern "C" fn qdist_mesh_tracker_free(tracker: Out<qdist_mesh_tracker>) {
+    if exclusive(&tracker).is_ok() {
+        // SAFETY: the header: from qdist_mesh_tracker_create, once.
+        drop(unsafe { tracker.boxed() });
     }
 }
 
@@ -205,30 +188,24 @@ pub unsafe extern "C" fn qdist_mesh_tracker_free(tracker: *mut qdist_mesh_tracke
 /// error the tracker is as before.
 /// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_tracker_update(
-    tracker: *mut qdist_mesh_tracker,
-    pose: *const qdist_mesh_pose,
-    budget: *const qdist_mesh_budget,
-    depth: *mut qdist_mesh_depth,
+pub extern "C" fn qdist_mesh_tracker_update(
+    tracker: Out<qdist_mesh_tracker>,
+    pose: In<qdist_mesh_pose>,
+    budget: In<qdist_mesh_budget>,
+    depth: Out<qdist_mesh_depth>,
 ) -> qdist_status {
     guard(|| {
-        aligned(depth)?;
-        // SAFETY: what the header asks of the caller.
-        let (mut tracker, pose, tick) = unsafe {
-            known_size((&raw const (*depth).struct_size).read(), size_of::<qdist_mesh_depth>())?;
-            (exclusive(tracker)?, shared(pose)?.checked()?, Tick::new(budget)?)
-        };
+        depth.known()?;
+        let (mut tracker, pose, tick) = (exclusive(&tracker)?, pose.get()?.checked()?, Tick::new(budget)?);
         let model = tracker.a.clone();
         let metric = tick.metric.of(&model)?;
         let found = tracker.ask(|tracker| {
-            // SAFETY: the promise of `Tick::new`.
+            // SAFETY: the header: `late` may be called with `late_user` during the call.
             let late = || tick.late.is_some_and(|late| unsafe { late(tick.user) } != 0);
             let clock = tick.late.is_some().then_some(&late as &dyn Fn() -> bool);
             tracker.update(&pose, metric, &tick.budget, clock)
         })?;
-        // SAFETY: checked.
-        unsafe { depth.write(qdist_mesh_depth::new(&found)) };
-        Ok(())
+        depth.put_version(qdist_mesh_depth::new(&found))
     })
 }
 
@@ -237,21 +214,15 @@ pub unsafe extern "C" fn qdist_mesh_tracker_update(
 ///
 /// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_tracker_merge(
-    tracker: *mut qdist_mesh_tracker,
-    answer: *const qdist_mesh_depth,
-    taken: *mut u32,
+pub extern "C" fn qdist_mesh_tracker_merge(
+    tracker: Out<qdist_mesh_tracker>,
+    answer: In<qdist_mesh_depth>,
+    taken: Out<u32>,
 ) -> qdist_status {
     guard(|| {
-        aligned(answer)?;
-        if !taken.is_null() {
-            aligned(taken)?;
-        }
-        // SAFETY: what the header asks of the caller.
-        let (mut tracker, pose) = unsafe {
-            known_size((&raw const (*answer).struct_size).read(), size_of::<qdist_mesh_depth>())?;
-            (exclusive(tracker)?, shared(answer)?.pose.checked()?)
-        };
+        taken.optional()?;
+        let pose = answer.current()?.pose.checked();
+        let (mut tracker, pose) = (exclusive(&tracker)?, pose?);
         // The tracker tests the pose, and believes nothing else.
         let answer = MeshDepth {
             outcome: Outcome::Bounded,
@@ -264,20 +235,15 @@ pub unsafe extern "C" fn qdist_mesh_tracker_merge(
             walks: 0,
         };
         let free = tracker.ask(|tracker| tracker.merge(&answer))?;
-        if !taken.is_null() {
-            // SAFETY: checked, and what the header asks of the caller.
-            unsafe { taken.write(free.into()) };
-        }
-        Ok(())
+        if taken.is_null() { Ok(()) } else { taken.put(free.into()) }
     })
 }
 
 /// Forgets everything: the next tick is the first.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_mesh_tracker_reset(tracker: *mut qdist_mesh_tracker) -> qdist_status {
+pub extern "C" fn qdist_mesh_tracker_reset(tracker: Out<qdist_mesh_tracker>) -> qdist_status {
     guard(|| {
-        // SAFETY: what the header asks of the caller.
-        let mut tracker = unsafe { exclusive(tracker) }?;
+        let mut tracker = exclusive(&tracker)?;
         tracker.ask(DepthTracker::reset)
     })
 }

@@ -4,15 +4,14 @@
 //! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
-use super::super::super::generic::{aligned, array, clear_gaps, flag, gaps, lengths, put, shared};
-use super::super::super::grasp::{
-    QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, from_contact, from_grasp, qdist_friction,
-};
+use super::super::super::grasp::{QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, all_of, from_contact, qdist_friction};
+use super::super::super::numbers::{flag, lengths};
+use super::super::super::pointer::{In, Out, gaps};
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
 use qdist::Vector;
 use qdist::grasp::{
-    ActiveForces, Contact, ContactError, Friction, GraspError, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace,
-    WrenchFrame, default_tolerance,
+    ActiveForces, Contact, ContactError, Friction, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace, WrenchFrame,
+    default_tolerance,
 };
 use qdist::internal::usable;
 
@@ -147,9 +146,15 @@ impl qdist_primitive_f64 {
         Ok(Self::list(list))
     }
 
+    /// As C has it.
+    fn of(primitive: &Primitive<f64>) -> Self {
+        // SAFETY: asserted above; both are `repr(C)` with the same numbers in the same order.
+        unsafe { core::ptr::from_ref(primitive).cast::<Self>().read() }
+    }
+
     /// Unchecked: numbers that are none end a query.
     pub(super) fn list(list: &[Self]) -> &[Primitive<f64>] {
-        // SAFETY: both are `repr(C)` with the same numbers in the same order, of which any bits are legal.
+        // SAFETY: asserted above; both are `repr(C)` with the same numbers in the same order, of which any bits are legal.
         unsafe { core::slice::from_raw_parts(list.as_ptr().cast(), list.len()) }
     }
 }
@@ -159,110 +164,60 @@ pub(super) fn tolerance(tolerance: f64) -> f64 {
     if tolerance == 0.0 { default_tolerance() } else { tolerance }
 }
 
-/// Primitives of `count` contacts, whoever generates the forces: joints, or the structure. `primitives` has room for as many.
+/// Primitives of `count` contacts. active: 0: whoever generates the forces, joints or the structure; 1: of the forces that joint torques generate,
+/// for contacts of fingers, and of all forces, for those of the palm. `primitives` has room for as many.
 ///
+/// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
+/// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
 /// which: NULL; or after an error that is a contact's, its index is written there.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_passive_primitives_f64(
-    contacts: *const qdist_contact_f64,
+pub extern "C" fn qdist_primitives_f64(
+    contacts: In<qdist_contact_f64>,
     count: u32,
-    frame: *const qdist_wrench_frame_f64,
-    primitives: *mut qdist_primitive_f64,
-    which: *mut u32,
-) -> qdist_status {
-    let primitive =
-        |contact: &qdist_contact_f64, frame: &WrenchFrame<f64>| Primitive::passive(&contact.checked()?, frame);
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { collect(contacts, count, frame, primitives, which, primitive) })
-}
-
-/// Primitives of the forces that joint torques generate, for contacts of fingers; of all forces, for those of the palm.
-///
-/// rank_tolerance: decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force may be from what the
-/// joints generate. 0: 1e-9 (float: 4e-6). The other arguments as above.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_active_primitives_f64(
-    contacts: *const qdist_contact_f64,
-    count: u32,
-    frame: *const qdist_wrench_frame_f64,
+    frame: In<qdist_wrench_frame_f64>,
+    active: u32,
     rank_tolerance: f64,
-    primitives: *mut qdist_primitive_f64,
-    which: *mut u32,
+    primitives: Out<qdist_primitive_f64>,
+    which: Out<u32>,
 ) -> qdist_status {
-    let primitive = |contact: &qdist_contact_f64, frame: &WrenchFrame<f64>| {
-        let HandContact { contact, jacobian } = contact.of_hand()?;
-        match jacobian {
-            Some(jacobian) => {
-                ActiveForces::new(&contact, &jacobian, frame, tolerance(rank_tolerance))?.primitive(&contact, frame)
+    let make = || {
+        primitives.checked()?;
+        which.optional()?;
+        let active = flag(active)?;
+        let (contacts, frame) = (contacts.array(Some(count as usize))?, frame.get()?.checked()?);
+        let primitive = |_: usize, contact: &qdist_contact_f64| {
+            if !active {
+                return Primitive::passive(&contact.checked()?, &frame);
             }
-            None => Primitive::passive(&contact, frame),
-        }
+            let HandContact { contact, jacobian } = contact.of_hand()?;
+            let Some(jacobian) = jacobian else { return Primitive::passive(&contact, &frame) };
+            ActiveForces::new(&contact, &jacobian, &frame, tolerance(rank_tolerance))?.primitive(&contact, &frame)
+        };
+        all_of(contacts, &which, primitive, |index, made| primitives.put_at(index, qdist_primitive_f64::of(&made)))
     };
-    // SAFETY: what the header asks of the caller.
-    status(unsafe { collect(contacts, count, frame, primitives, which, primitive) })
-}
-
-/// # Safety
-/// What the header asks of the caller of `qdist_passive_primitives`.
-unsafe fn collect(
-    contacts: *const qdist_contact_f64,
-    count: u32,
-    frame: *const qdist_wrench_frame_f64,
-    primitives: *mut qdist_primitive_f64,
-    which: *mut u32,
-    primitive: impl Fn(&qdist_contact_f64, &WrenchFrame<f64>) -> Result<Primitive<f64>, ContactError>,
-) -> Check {
-    aligned(primitives)?;
-    if !which.is_null() {
-        aligned(which)?;
-    }
-    // SAFETY: the caller's promise.
-    let (contacts, frame) = unsafe { (array(contacts, Some(count as usize))?, shared(frame)?.checked()?) };
-    let numbered = || contacts.iter().enumerate();
-    // All are checked before the first is written.
-    for (index, contact) in numbered() {
-        if let Err(error) = primitive(contact, &frame) {
-            // SAFETY: the caller's promise.
-            return Err(unsafe { from_grasp(GraspError { contact: index, error }, which) });
-        }
-    }
-    for (index, contact) in numbered() {
-        if let Ok(made) = primitive(contact, &frame) {
-            // SAFETY: the caller's promise: room for `count`.
-            unsafe {
-                let to = primitives.add(index);
-                to.cast::<Primitive<f64>>().write(made);
-                clear_gaps(to);
-            }
-        }
-    }
-    Ok(())
+    status(make())
 }
 
 /// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_active_forces_f64(
-    contact: *const qdist_contact_f64,
-    frame: *const qdist_wrench_frame_f64,
+pub extern "C" fn qdist_active_forces_f64(
+    contact: In<qdist_contact_f64>,
+    frame: In<qdist_wrench_frame_f64>,
     rank_tolerance: f64,
-    active: *mut qdist_active_f64,
+    active: Out<qdist_active_f64>,
 ) -> qdist_status {
     let ask = || {
-        aligned(active)?;
-        // SAFETY: what the header asks of the caller.
-        let (contact, frame) = unsafe { (shared(contact)?, shared(frame)?.checked()?) };
+        active.checked()?;
+        let (contact, frame) = (contact.get()?, frame.get()?.checked()?);
         let HandContact { contact, jacobian } = contact.of_hand().map_err(from_contact)?;
         let jacobian = jacobian.ok_or(QDIST_ERROR_ARGUMENT)?;
         let forces = ActiveForces::new(&contact, &jacobian, &frame, tolerance(rank_tolerance)).map_err(from_contact)?;
-        let found = qdist_active_f64 {
+        active.put(qdist_active_f64 {
             rank: forces.rank() as u32,
             can_press: u32::from(forces.dimension().is_some()),
             dimension: forces.dimension().unwrap_or(0) as u32,
             delta: forces.delta().unwrap_or(-1.0),
-        };
-        // SAFETY: checked.
-        unsafe { put(active, found) };
-        Ok(())
+        })
     };
     status(ask())
 }
@@ -272,28 +227,23 @@ pub unsafe extern "C" fn qdist_active_forces_f64(
 ///
 /// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_wrench_subspace_f64(
-    primitives: *const qdist_primitive_f64,
+pub extern "C" fn qdist_wrench_subspace_f64(
+    primitives: In<qdist_primitive_f64>,
     count: u32,
     rank_tolerance: f64,
-    dimension: *mut u32,
-    basis: *mut f64,
+    dimension: Out<u32>,
+    basis: Out<f64>,
 ) -> qdist_status {
     let ask = || {
-        aligned(dimension)?;
-        aligned(basis)?;
-        // SAFETY: what the header asks of the caller.
-        let list = unsafe { array(primitives, Some(count as usize)) }?;
-        let found =
-            Subspace::new(qdist_primitive_f64::checked(list)?, tolerance(rank_tolerance)).map_err(from_contact)?;
+        dimension.checked()?;
+        basis.checked()?;
+        let list = qdist_primitive_f64::checked(primitives.array(Some(count as usize))?)?;
+        let found = Subspace::new(list, tolerance(rank_tolerance)).map_err(from_contact)?;
         let axes = found.basis().iter().flatten().copied();
         for (index, x) in axes.chain(core::iter::repeat(0.0)).take(36).enumerate() {
-            // SAFETY: what the header asks of the caller: room for 36 numbers.
-            unsafe { basis.add(index).write(x) };
+            basis.put_at(index, x)?;
         }
-        // SAFETY: checked.
-        unsafe { dimension.write(found.dimension() as u32) };
-        Ok(())
+        dimension.put(found.dimension() as u32)
     };
     status(ask())
 }

@@ -6,20 +6,19 @@
 //! program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`make figures`),
 //! with up to 43 KB of stack in double (`make stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
 
-use super::super::super::generic::{aligned, array, finite, put, shared};
 use super::super::super::grasp::{force_model, from_grasp, norm as checked_norm, qdist_force_model, qdist_norm};
+use super::super::super::numbers::finite;
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{Check, QDIST_ERROR_CALLBACK, QDIST_ERROR_FINGER, qdist_status, status};
-use super::super::sets::{qdist_set_f64, room};
+use super::super::sets::qdist_set_f64;
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
 use super::forces::{qdist_force_memory_f64, qdist_force_options_f64, qdist_forces_f64, resist};
+use super::wrenches::Wrenches;
 use core::borrow::Borrow;
-use core::ffi::c_void;
-use core::mem::MaybeUninit;
 use qdist::Vector;
 use qdist::grasp::{
     Contact, ContactError, Contribution, Finger, Friction, GraspError, HandContact, MAX_CONTACTS, MAX_JOINTS, WrenchSet,
 };
-use qdist::internal::one_by_one;
 use qdist::support::{Failure, Support};
 
 /// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
@@ -33,14 +32,12 @@ pub struct qdist_finger_f64 {
     /// That of its frame.
     torque_scale: f64,
     /// Opaque.
-    words: MaybeUninit<[f64; 577]>,
+    words: [u64; 577],
 }
 
 const _: () = assert!(MAX_CONTACTS == 4);
-const _: () = assert!(size_of::<Finger<f64>>() <= size_of::<[f64; 577]>());
-const _: () = assert!(align_of::<Finger<f64>>() <= align_of::<f64>());
-// No padding in front of the words.
-const _: () = assert!(size_of::<qdist_finger_f64>() == 8 + size_of::<[f64; 578]>());
+const _: () =
+    assert!(size_of::<Finger<f64>>() <= size_of::<[u64; 577]>() && align_of::<Finger<f64>>() <= align_of::<u64>());
 
 /// Differs between the scalar types.
 const TAG: u32 = u32::from_le_bytes(*b"qdfi") ^ size_of::<f64>() as u32;
@@ -50,7 +47,7 @@ const TAG: u32 = u32::from_le_bytes(*b"qdfi") ^ size_of::<f64>() as u32;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_finger_wrenches_f64 {
-    pub fingers: *const qdist_finger_f64,
+    pub fingers: In<qdist_finger_f64>,
     pub count: u32,
     /// QDIST_L1 or QDIST_LINF.
     pub norm: qdist_norm,
@@ -61,9 +58,7 @@ pub struct qdist_finger_wrenches_f64 {
 pub(super) struct CheckedFinger(qdist_finger_f64);
 
 impl CheckedFinger {
-    /// # Safety
-    /// A finger with the tag is as `qdist_finger_init` made it.
-    unsafe fn list(list: &[qdist_finger_f64]) -> Check<&[Self]> {
+    fn list(list: &[qdist_finger_f64]) -> Check<&[Self]> {
         if list.iter().any(|finger| finger.tag != TAG) {
             return Err(QDIST_ERROR_FINGER);
         }
@@ -72,8 +67,14 @@ impl CheckedFinger {
     }
 
     fn finger(&self) -> &Finger<f64> {
-        // SAFETY: the promise of `list`; large and aligned enough.
+        // SAFETY: what the header asks of the caller: a finger with the tag is as `qdist_finger_init` made it. Large and aligned enough.
         unsafe { &*self.0.words.as_ptr().cast() }
+    }
+
+    /// Forces of its contacts in units of force and force times position.
+    fn in_units(&self, force: &Vector<f64, 4>) -> [f64; 4] {
+        let [normal, o, t, spin] = (*force).into();
+        [normal, o, t, spin * self.0.torque_scale]
     }
 }
 
@@ -102,11 +103,18 @@ impl Contribution<f64> for CheckedFinger {
 }
 
 impl qdist_finger_wrenches_f64 {
-    /// # Safety
-    /// If not NULL and aligned, the list is valid for reads of `count` fingers for the life of the set, as `qdist_finger_init` made them.
-    unsafe fn fingers(&self) -> Check<&[CheckedFinger]> {
-        // SAFETY: the caller's promise.
-        unsafe { CheckedFinger::list(array(self.fingers, Some(self.count as usize))?) }
+    fn fingers(&self) -> Check<&[CheckedFinger]> {
+        CheckedFinger::list(self.fingers.array(Some(self.count as usize))?)
+    }
+}
+
+impl Wrenches for qdist_finger_wrenches_f64 {
+    type Contribution<'a> = CheckedFinger;
+    fn checked(&self) -> Check<WrenchSet<'_, f64, CheckedFinger>> {
+        Ok(WrenchSet::new(self.fingers()?, checked_norm(self.norm)?))
+    }
+    fn unchecked(&self) -> Check<WrenchSet<'_, f64, CheckedFinger>> {
+        Ok(WrenchSet::without_size(self.fingers()?, checked_norm(self.norm)?))
     }
 }
 
@@ -114,32 +122,28 @@ impl qdist_finger_wrenches_f64 {
 ///
 /// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
 /// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
-/// qdist_active_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
+/// qdist_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
 /// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
 ///
 /// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
 /// figures`, `make stack`).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_finger_init_f64(
-    finger: *mut qdist_finger_f64,
-    contacts: *const qdist_contact_f64,
+pub extern "C" fn qdist_finger_init_f64(
+    finger: Out<qdist_finger_f64>,
+    contacts: In<qdist_contact_f64>,
     count: u32,
-    limits: *const f64,
+    frame: In<qdist_wrench_frame_f64>,
+    limits: In<f64>,
     model: qdist_force_model,
-    frame: *const qdist_wrench_frame_f64,
     rank_tolerance: f64,
-    which: *mut u32,
+    which: Out<u32>,
 ) -> qdist_status {
     let make = || {
-        aligned(finger)?;
-        if !which.is_null() {
-            aligned(which)?;
-        }
+        finger.checked()?;
+        which.optional()?;
         let model = force_model(model)?;
-        // SAFETY: what the header asks of the caller.
-        let (contacts, frame) = unsafe { (array(contacts, Some(count as usize))?, shared(frame)?.checked()?) };
-        // SAFETY: what the header asks of the caller.
-        let refuse = |contact: usize, error| unsafe { from_grasp(GraspError { contact, error }, which) };
+        let (contacts, frame) = (contacts.array(Some(count as usize))?, frame.get()?.checked()?);
+        let refuse = |contact: usize, error| from_grasp(GraspError { contact, error }, &which);
 
         let (x, zero) = (Vector::from([1.0, 0.0, 0.0]), Vector::zeros());
         let place = Contact::new(zero, x, Friction::Frictionless).map_err(|error| refuse(0, error))?;
@@ -153,8 +157,7 @@ pub unsafe extern "C" fn qdist_finger_init_f64(
         let limits = if limits.is_null() || joints == 0 {
             [f64::INFINITY; MAX_JOINTS].get(..joints).unwrap_or_default()
         } else {
-            // SAFETY: what the header asks of the caller.
-            unsafe { array(limits, Some(joints)) }?
+            limits.array(Some(joints))?
         };
         let made = Finger::new(list, limits, model, &frame, tolerance(rank_tolerance)).map_err(|error| {
             let at = match error.error {
@@ -163,71 +166,32 @@ pub unsafe extern "C" fn qdist_finger_init_f64(
             };
             refuse(at, error.error)
         })?;
-        // SAFETY: checked; large and aligned enough.
-        unsafe {
-            (&raw mut (*finger).tag).write(TAG);
-            (&raw mut (*finger).contacts).write(count);
-            (&raw mut (*finger).torque_scale).write(frame.torque_scale());
-            (&raw mut (*finger).words).cast::<Finger<f64>>().write(made);
-        }
+        write(&finger, count, frame.torque_scale(), made);
         Ok(())
     };
     status(make())
 }
 
-/// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_set_finger_wrenches_f64(
-    set: *mut qdist_set_f64,
-    wrenches: *const qdist_finger_wrenches_f64,
-) -> qdist_status {
-    let fill = || {
-        aligned(set)?;
-        // SAFETY: what the header asks of the caller.
-        let checked = unsafe {
-            let wrenches = shared(wrenches)?;
-            WrenchSet::new(wrenches.fingers()?, checked_norm(wrenches.norm)?)
-        };
-        let made = qdist_set_f64 {
-            support: Some(qdist_finger_wrenches_support_f64),
-            exhaustive: None,
-            mirrored: None,
-            user: wrenches.cast_mut().cast(),
-            radius: 0.0,
-            extent: checked.extent(),
-            error: checked.error(),
-            dimension: 6,
-            contains_origin: checked.contains_origin().into(),
-        };
-        // SAFETY: checked.
-        unsafe { put(set, made) };
-        Ok(())
-    };
-    status(fill())
+/// Writes a finger with all of its bytes: its own and zeros.
+fn write(finger: &Out<qdist_finger_f64>, contacts: u32, torque_scale: f64, made: Finger<f64>) {
+    let finger = finger.address();
+    // SAFETY: the pointer has been checked; the words are large and aligned enough.
+    unsafe {
+        finger.write_bytes(0, 1);
+        (&raw mut (*finger).tag).write(TAG);
+        (&raw mut (*finger).contacts).write(contacts);
+        (&raw mut (*finger).torque_scale).write(torque_scale);
+        (&raw mut (*finger).words).cast::<Finger<f64>>().write(made);
+    }
 }
 
-/// Support function of a set of fingers. It may return QDIST_CALLBACK_UNSOLVED.
+/// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_finger_wrenches_support_f64(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    let ask = || {
-        let point = room::<6>(point)?;
-        // SAFETY: what the header asks of the caller.
-        let found = unsafe {
-            let set = shared(user.cast::<qdist_finger_wrenches_f64>().cast_const())?;
-            let u = Vector::from_iterator(array(direction, Some(6))?.iter().copied());
-            WrenchSet::without_size(set.fingers()?, checked_norm(set.norm)?)
-                .support(&u)
-                .map_err(|Failure(code)| code)?
-        };
-        // SAFETY: checked.
-        unsafe { point.write(one_by_one(&found).into()) };
-        Ok(())
-    };
-    status(ask())
+pub extern "C" fn qdist_set_finger_wrenches_f64(
+    set: Out<qdist_set_f64>,
+    wrenches: In<qdist_finger_wrenches_f64>,
+) -> qdist_status {
+    status(Wrenches::fill(set, wrenches))
 }
 
 /// The contact forces whose wrenches add up to the finger's farthest wrench along a direction, six numbers: force i is forces[4 * i] to
@@ -235,33 +199,25 @@ pub unsafe extern "C" fn qdist_finger_wrenches_support_f64(
 ///
 /// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_finger_forces_f64(
-    finger: *const qdist_finger_f64,
-    direction: *const f64,
-    forces: *mut f64,
+pub extern "C" fn qdist_finger_forces_f64(
+    finger: In<qdist_finger_f64>,
+    direction: In<f64>,
+    forces: Out<f64>,
 ) -> qdist_status {
     let ask = || {
-        aligned(forces)?;
-        // SAFETY: what the header asks of the caller.
-        let (list, u) = unsafe { (CheckedFinger::list(array(finger, Some(1))?)?, array(direction, Some(6))?) };
-        finite(u)?;
-        let u = Vector::from_iterator(u.iter().copied());
+        forces.checked()?;
+        let (list, u) = (CheckedFinger::list(finger.array(Some(1))?)?, direction.numbers::<6>()?);
+        finite(&u)?;
+        let forces = forces.rows::<[f64; 4]>();
         for finger in list {
-            let found = finger.finger().forces(&u).map_err(|_| QDIST_ERROR_CALLBACK)?;
+            let found = finger.finger().forces(&Vector::from(u)).map_err(|_| QDIST_ERROR_CALLBACK)?;
             for (index, force) in found.iter().take(finger.finger().contacts()).enumerate() {
-                // SAFETY: what the header asks of the caller.
-                unsafe { forces.cast::<[f64; 4]>().add(index).write(in_units(force, finger.0.torque_scale)) };
+                forces.put_at(index, finger.in_units(force))?;
             }
         }
         Ok(())
     };
     status(ask())
-}
-
-/// The spin moment in units of force times position.
-fn in_units(force: &Vector<f64, 4>, torque_scale: f64) -> [f64; 4] {
-    let [normal, o, t, spin] = (*force).into();
-    [normal, o, t, spin * torque_scale]
 }
 
 /// The smallest contact forces that keep the object in equilibrium with an external wrench, as qdist_contact_forces: share i is that of finger
@@ -272,41 +228,31 @@ fn in_units(force: &Vector<f64, 4>, torque_scale: f64) -> [f64; 4] {
 ///
 /// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_finger_contact_forces_f64(
-    wrenches: *const qdist_finger_wrenches_f64,
-    memory: *mut qdist_force_memory_f64,
-    external: *const f64,
-    options: *const qdist_force_options_f64,
-    shares: *mut f64,
-    forces: *mut f64,
-    result: *mut qdist_forces_f64,
+pub extern "C" fn qdist_finger_contact_forces_f64(
+    wrenches: In<qdist_finger_wrenches_f64>,
+    memory: Out<qdist_force_memory_f64>,
+    external: In<f64>,
+    options: In<qdist_force_options_f64>,
+    shares: Out<f64>,
+    forces: Out<f64>,
+    result: Out<qdist_forces_f64>,
 ) -> qdist_status {
     let solve = || {
-        if !forces.is_null() {
-            aligned(forces)?;
-        }
-        // SAFETY: what the header asks of the caller.
-        let (fingers, norm) = unsafe {
-            let wrenches = shared(wrenches)?;
-            (wrenches.fingers()?, checked_norm(wrenches.norm)?)
-        };
-        let set = WrenchSet::new(fingers, norm);
-        // SAFETY: what the header asks of the caller: room for 16 numbers each, which nothing else refers to.
-        unsafe {
-            resist(&set, memory, external, options, shares, result, |solver| {
-                if forces.is_null() {
-                    return Ok(());
-                }
-                forces.write_bytes(0, 16 * fingers.len());
-                let list =
-                    core::slice::from_raw_parts_mut(forces.cast::<[Vector<f64, 4>; MAX_CONTACTS]>(), fingers.len());
-                solver.contact_forces(&set, list)?;
-                for (own, finger) in list.iter_mut().zip(fingers) {
-                    own.iter_mut().for_each(|force| *force = in_units(force, finger.0.torque_scale).into());
-                }
-                Ok(())
-            })
-        }
+        forces.optional()?;
+        let wrenches = wrenches.get()?;
+        let (fingers, set) = (wrenches.fingers()?, wrenches.checked()?);
+        let rows = forces.rows::<[Vector<f64, 4>; MAX_CONTACTS]>();
+        resist(&set, memory, external, options, shares, result, |solver| {
+            if rows.is_null() {
+                return Ok(());
+            }
+            let list = rows.zeroed(fingers.len()).map_err(Failure)?;
+            solver.contact_forces(&set, list)?;
+            for (own, finger) in list.iter_mut().zip(fingers) {
+                own.iter_mut().for_each(|force| *force = finger.in_units(force).into());
+            }
+            Ok(())
+        })
     };
     status(solve())
 }

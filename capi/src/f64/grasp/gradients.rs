@@ -3,14 +3,16 @@
 //! How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
 //! Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why.
 
-use super::super::super::generic::{aligned, array, flag, known_size, padded, shared};
-use super::super::super::grasp::{from_contact, from_grasp, kink, qdist_kink};
+use super::super::super::grasp::{all_of, kink, qdist_kink};
+use super::super::super::numbers::{flag, padded};
+use super::super::super::pointer::{In, Out, gaps, versioned};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::super::query::{qdist_result_f64, to_answer};
+use super::super::asked::to_answer;
+use super::super::query::qdist_result_f64;
 use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
-use super::wrenches::qdist_wrenches_f64;
-use qdist::grasp::{ContactGradient, GraspError, HandContact, MAX_JOINTS, Refined};
+use super::wrenches::{Wrenches, qdist_wrenches_f64};
+use qdist::grasp::{ContactGradient, HandContact, MAX_JOINTS, Refined};
 
 /// The weakest direction to rounding.
 #[repr(C)]
@@ -25,6 +27,9 @@ pub struct qdist_refined_f64 {
     /// The unit vector that proves `upper`.
     pub direction: [f64; 6],
 }
+
+gaps!(qdist_refined_f64);
+versioned!(qdist_refined_f64);
 
 /// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
 #[repr(C)]
@@ -49,40 +54,37 @@ pub struct qdist_contact_gradient_f64 {
     pub jacobian: [f64; 32],
 }
 
+gaps!(qdist_contact_gradient_f64);
+
 /// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
 /// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
 /// tolerance of 1e-2 is usually enough.
 ///
 /// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_grasp_gradients_f64(
-    wrenches: *const qdist_wrenches_f64,
-    contacts: *const qdist_contact_f64,
+pub extern "C" fn qdist_grasp_gradients_f64(
+    wrenches: In<qdist_wrenches_f64>,
+    contacts: In<qdist_contact_f64>,
     count: u32,
-    frame: *const qdist_wrench_frame_f64,
+    frame: In<qdist_wrench_frame_f64>,
     active: u32,
     rank_tolerance: f64,
-    q: *const qdist_unit_f64,
-    result: *const qdist_result_f64,
-    refined: *mut qdist_refined_f64,
-    gradients: *mut qdist_contact_gradient_f64,
-    which: *mut u32,
+    q: In<qdist_unit_f64>,
+    result: In<qdist_result_f64>,
+    refined: Out<qdist_refined_f64>,
+    gradients: Out<qdist_contact_gradient_f64>,
+    which: Out<u32>,
 ) -> qdist_status {
     let ask = || {
-        aligned(refined)?;
-        aligned(gradients)?;
-        if !which.is_null() {
-            aligned(which)?;
-        }
+        refined.checked()?;
+        gradients.checked()?;
+        which.optional()?;
         let active = flag(active)?;
-        // SAFETY: what the header asks of the caller.
-        let (set, contacts, frame, q, result) = unsafe {
-            known_size((&raw const (*refined).struct_size).read(), size_of::<qdist_refined_f64>())?;
-            let set = shared(wrenches)?.checked()?;
-            let contacts = array(contacts, Some(count as usize))?;
-            (set, contacts, shared(frame)?.checked()?, CheckedUnit::new::<6>(q)?, shared(result)?)
-        };
-        known_size(result.struct_size, size_of::<qdist_result_f64>())?;
+        refined.known()?;
+        let set = wrenches.get()?.checked()?;
+        let contacts = contacts.array(Some(count as usize))?;
+        let (frame, q) = (frame.get()?.checked()?, CheckedUnit::new::<6>(q)?);
+        let result = result.current()?;
         if set.contributions().len() != contacts.len() {
             return Err(QDIST_ERROR_ARGUMENT);
         }
@@ -92,27 +94,13 @@ pub unsafe extern "C" fn qdist_grasp_gradients_f64(
             let hand = if active { hand } else { HandContact { jacobian: None, ..hand } };
             found.gradient(index, &hand, &frame, tolerance(rank_tolerance))
         };
-        // All are computed before the first is written.
-        for (index, contact) in contacts.iter().enumerate() {
-            if let Err(error) = gradient(index, contact) {
-                // SAFETY: what the header asks of the caller.
-                return Err(unsafe { from_grasp(GraspError { contact: index, error }, which) });
-            }
-        }
-        for (index, contact) in contacts.iter().enumerate() {
-            let made = from_gradient(gradient(index, contact).map_err(from_contact)?.as_ref());
-            // SAFETY: what the header asks of the caller: room for `count`.
-            unsafe { gradients.add(index).write(made) };
-        }
-        let made = qdist_refined_f64 {
+        all_of(contacts, &which, gradient, |index, made| gradients.put_at(index, from_gradient(made.as_ref())))?;
+        refined.put_version(qdist_refined_f64 {
             struct_size: size_of::<qdist_refined_f64>() as u32,
             kink: kink(found.kink),
             upper: found.answer.upper,
             direction: padded(found.answer.direction.iter().copied()),
-        };
-        // SAFETY: checked.
-        unsafe { refined.write(made) };
-        Ok(())
+        })
     };
     status(ask())
 }

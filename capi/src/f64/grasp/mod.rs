@@ -5,5 +5,6 @@ pub mod fingers;
 pub mod forces;
 pub mod gradients;
 pub mod linearized;
+pub mod pyramids;
 pub mod quality;
 pub mod wrenches;

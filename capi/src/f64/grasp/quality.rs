@@ -3,12 +3,14 @@
 //! Force closure, and the best of many grasps. The depth itself, contact forces for one wrench (a segment as Q) and "is it at least so
 //! much?" (use_threshold of the options) are what qdist_solve6 answers.
 
-use super::super::super::generic::{aligned, array, gaps, known_size, padded, put, shared};
 use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
 use super::super::super::handle::{self, qdist_solver};
+use super::super::super::numbers::padded;
+use super::super::super::pointer::{In, Out, gaps, versioned};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
-use super::super::query::{convert, from_answer, qdist_options_f64, qdist_result_f64};
-use super::super::sets::qdist_set_f64;
+use super::super::asked::{convert, from_answer};
+use super::super::query::{qdist_options_f64, qdist_result_f64};
+use super::super::sets::{CheckedSet, qdist_set_f64};
 use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
 use super::wrenches::behind;
 use qdist::grasp::Closure;
@@ -29,6 +31,9 @@ pub struct qdist_closure_f64 {
     pub direction: [f64; 6],
 }
 
+gaps!(qdist_closure_f64);
+versioned!(qdist_closure_f64);
+
 /// The best of a list of sets.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -44,31 +49,28 @@ pub struct qdist_best_f64 {
 }
 
 gaps!(qdist_best_f64, result.callback_code..);
+versioned!(qdist_best_f64);
 
 /// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
 /// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
 /// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_force_closure_f64(
-    solver: *mut qdist_solver,
-    set: *const qdist_set_f64,
-    options: *const qdist_options_f64,
-    closure: *mut qdist_closure_f64,
+pub extern "C" fn qdist_force_closure_f64(
+    solver: Out<qdist_solver>,
+    set: In<qdist_set_f64>,
+    options: In<qdist_options_f64>,
+    closure: Out<qdist_closure_f64>,
 ) -> qdist_status {
     let solve = || {
-        aligned(closure)?;
-        // SAFETY: what the header asks of the caller.
-        let (list, set, mut solver, options, deadline) = unsafe {
-            let set = shared(set)?;
-            let solver = handle::open::<f64, 6>(solver)?;
-            known_size((&raw const (*closure).struct_size).read(), size_of::<qdist_closure_f64>())?;
-            let (options, deadline) = convert::<6>(options)?;
-            let checked = set.checked::<6>()?;
-            (behind(set), checked, solver, options, deadline)
-        };
+        closure.checked()?;
+        let set = set.get()?;
+        let mut solver = handle::open::<f64, 6>(&solver)?;
+        closure.known()?;
+        let (options, deadline) = convert::<6>(options)?;
+        let (checked, list) = (CheckedSet::new::<6>(set)?, behind(set));
         let set: &dyn Support<f64, 6> = match &list {
             Some(list) => list,
-            None => set,
+            None => &checked,
         };
         let found = deadline.during(|interrupt| solver.force_closure_until(set, &options, interrupt));
         let (verdict, radius, direction) = match found {
@@ -77,9 +79,7 @@ pub unsafe extern "C" fn qdist_force_closure_f64(
             Closure::Undecided { direction } => (QDIST_CLOSURE_UNDECIDED, 0.0, padded(direction.iter().copied())),
         };
         let struct_size = size_of::<qdist_closure_f64>() as u32;
-        // SAFETY: checked.
-        unsafe { closure.write(qdist_closure_f64 { struct_size, verdict, radius, direction }) };
-        Ok(())
+        closure.put_version(qdist_closure_f64 { struct_size, verdict, radius, direction })
     };
     status(solve())
 }
@@ -88,39 +88,33 @@ pub unsafe extern "C" fn qdist_force_closure_f64(
 /// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
 /// that they have.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn qdist_best_of6_f64(
-    solver: *mut qdist_solver,
-    sets: *const qdist_set_f64,
+pub extern "C" fn qdist_best_of6_f64(
+    solver: Out<qdist_solver>,
+    sets: In<qdist_set_f64>,
     count: u32,
-    q: *const qdist_unit_f64,
-    options: *const qdist_options_f64,
-    best: *mut qdist_best_f64,
+    q: In<qdist_unit_f64>,
+    options: In<qdist_options_f64>,
+    best: Out<qdist_best_f64>,
 ) -> qdist_status {
     let solve = || {
-        aligned(best)?;
-        // SAFETY: what the header asks of the caller.
-        let (sets, mut solver, q, options, deadline) = unsafe {
-            let sets = array(sets, Some(count as usize))?;
-            let solver = handle::open::<f64, 6>(solver)?;
-            known_size((&raw const (*best).struct_size).read(), size_of::<qdist_best_f64>())?;
-            known_size((&raw const (*best).result.struct_size).read(), size_of::<qdist_result_f64>())?;
-            sets.iter().try_for_each(|set| set.checked::<6>().map(|_| ()))?;
-            let (options, deadline) = convert::<6>(options)?;
-            (sets, solver, CheckedUnit::new::<6>(q)?, options, deadline)
-        };
-        // SAFETY: all have been checked.
-        let checked = sets.iter().filter_map(|set| unsafe { set.checked::<6>() }.ok());
+        best.checked()?;
+        let sets = sets.array(Some(count as usize))?;
+        let mut solver = handle::open::<f64, 6>(&solver)?;
+        best.known()?;
+        best.part::<qdist_result_f64>(core::mem::offset_of!(qdist_best_f64, result))?.known()?;
+        sets.iter().try_for_each(|set| set.check(6))?;
+        let (options, deadline) = convert::<6>(options)?;
+        let q = CheckedUnit::new::<6>(q)?;
+        let checked = sets.iter().filter_map(|set| CheckedSet::new::<6>(set).ok());
         let found = deadline.during(|interrupt| solver.best_of_until(checked, q.unit(), &options, interrupt));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
         overflow(found.answer.failure)?;
-        let made = qdist_best_f64 {
+        best.put_version(qdist_best_f64 {
             struct_size: size_of::<qdist_best_f64>() as u32,
             index: found.index as u32,
             ceiling: found.ceiling,
             result: from_answer(&found.answer, q.code(found.answer.failure)),
-        };
-        // SAFETY: checked.
-        unsafe { put(best, made) };
+        })?;
         if found.answer.failure != 0 { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
     };
     status(solve())

@@ -1,0 +1,211 @@
+//! The library's own support functions and unit sets, as C calls them: a struct of the header is behind `user`, and says what it is a set of. What
+//! the arguments are is the same for all, and is looked at here.
+
+use super::super::numbers::MAX_DIMENSION;
+use super::super::pointer::{In, Out};
+use super::super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, status};
+use super::sets::{qdist_precise_f64, qdist_support_f64};
+use super::unit_sets::qdist_unit_f64;
+use core::ffi::c_void;
+use core::mem::MaybeUninit;
+use qdist::{TwoWords, Vector};
+
+/// How a struct answers as a set of dimension `N`.
+pub(super) trait Answers<const N: usize>: 'static {
+    type Struct: 'static;
+    /// A point of the core that is farthest along `u`, or a code.
+    fn farthest(of: &Self::Struct, u: &Vector<f64, N>, exhaustive: bool) -> Check<Vector<f64, N>>;
+    /// The same in two words, where the struct has that.
+    fn precise(_of: &Self::Struct, _u: &TwoWords<f64, N>) -> Option<TwoWords<f64, N>> {
+        None
+    }
+}
+
+/// The support function, for a set's `support`.
+pub(super) fn support_of<A: Answers<N>, const N: usize>() -> qdist_support_f64 {
+    Some(support::<A, N, false>)
+}
+
+/// The same without shortcuts, for `exhaustive`.
+pub(super) fn exhaustive_of<A: Answers<N>, const N: usize>() -> qdist_support_f64 {
+    Some(support::<A, N, true>)
+}
+
+pub(super) fn precise_of<A: Answers<N>, const N: usize>() -> qdist_precise_f64 {
+    Some(precise::<A, N>)
+}
+
+type Arguments<'a, S, const N: usize, const M: usize> = (&'a S, &'a Vector<f64, N>, &'a mut MaybeUninit<[f64; M]>);
+
+/// The arguments of a support function: the struct behind `user`, the direction, and room for the point.
+///
+/// # Safety
+/// Each pointer that is neither NULL nor misaligned is valid for an `S`, for `N` numbers, and for writes of `M` numbers.
+#[inline(always)]
+unsafe fn arguments<'a, S, const N: usize, const M: usize>(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> Check<Arguments<'a, S, N, M>> {
+    let user = user.cast::<S>().cast_const();
+    if user.is_null() || direction.is_null() || point.is_null() {
+        return Err(QDIST_ERROR_NULL);
+    }
+    // One branch for all three.
+    if !(user.is_aligned() & direction.is_aligned() & point.is_aligned()) {
+        return Err(QDIST_ERROR_ALIGNMENT);
+    }
+    // SAFETY: neither NULL nor misaligned, and the caller's promise; a vector is its numbers in a row.
+    unsafe { Ok((&*user, &*direction.cast(), &mut *point.cast())) }
+}
+
+unsafe extern "C" fn support<A: Answers<N>, const N: usize, const EXHAUSTIVE: bool>(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
+    let arguments = unsafe { arguments::<A::Struct, N, N>(user, direction, point) };
+    let ask = || {
+        let (of, u, room) = arguments?;
+        room.write(A::farthest(of, u, EXHAUSTIVE)?.into());
+        Ok(())
+    };
+    status(ask())
+}
+
+unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller of such a function: two directions in a row, and room for two points.
+    let arguments = unsafe { arguments::<A::Struct, N, N>(user, direction, point) };
+    let ask = || {
+        let (of, high, room) = arguments.ok()?;
+        // SAFETY: the second of the two directions.
+        let low = unsafe { direction.add(N).cast::<[f64; N]>().read() };
+        let found = A::precise(of, &TwoWords { high: *high, low: Vector::from(low) })?;
+        room.write(found.high.into());
+        // SAFETY: the second of the two points.
+        unsafe { point.add(N).cast::<[f64; N]>().write(found.low.into()) };
+        Some(())
+    };
+    i32::from(ask().is_none())
+}
+
+// ------------------------------------------------------------------------------------------------- run-time dimensions
+
+/// The same for a struct that knows its dimension at run time only.
+pub(super) trait AnswersAny: 'static {
+    type Struct: 'static;
+    fn dimension(of: &Self::Struct) -> Check<usize>;
+    /// A point, or a code; `u` has as many numbers as the dimension, of which the answer's first count.
+    fn farthest(of: &Self::Struct, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]>;
+    /// Does the set not change when these coordinates change sign?
+    fn mirrored(_of: &Self::Struct, _signs: u8) -> bool {
+        false
+    }
+}
+
+pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: bool>(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
+    // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
+    let (of, u, room) = unsafe { (In::<A::Struct>::new(user.cast()), In::new(direction), Out::new(point)) };
+    let ask = || {
+        let of = of.get()?;
+        let n = A::dimension(of)?;
+        let u = u.array(Some(n))?;
+        room.checked()?;
+        put_first(&room, &A::farthest(of, u, EXHAUSTIVE)?, n)
+    };
+    status(ask())
+}
+
+pub(super) unsafe extern "C" fn mirrored_any<A: AnswersAny>(user: *mut c_void, signs: u32) -> i32 {
+    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
+    let of = unsafe { In::<A::Struct>::new(user.cast()) };
+    i32::from(of.get().is_ok_and(|of| A::mirrored(of, signs as u8)))
+}
+
+fn put_first(room: &Out<f64>, point: &[f64; MAX_DIMENSION], n: usize) -> Check {
+    for (index, &x) in point.iter().enumerate().take(n) {
+        room.put_at(index, x)?;
+    }
+    Ok(())
+}
+
+// ------------------------------------------------------------------------------------------------- unit sets
+
+/// How a struct answers as a unit set.
+pub(super) trait AnswersUnit: 'static {
+    fn dimension(&self) -> Check<usize>;
+    /// h_Q(u)
+    fn value(&self, u: &[f64]) -> Check<f64>;
+    /// A point with u.q = h_Q(u).
+    fn point(&self, u: &[f64]) -> Check<[f64; MAX_DIMENSION]>;
+    fn vertex(&self, _index: usize) -> Check<[f64; MAX_DIMENSION]> {
+        Err(QDIST_ERROR_ARGUMENT)
+    }
+    fn mirrored(&self, _signs: u32) -> bool {
+        false
+    }
+
+    /// Fills a unit set: `stated` is what it says of itself, and `functions` which of those above it has.
+    fn fill(unit: &Out<qdist_unit_f64>, shape: In<Self>, stated: qdist_unit_f64, has_mirrors: bool) -> Check
+    where
+        Self: Sized,
+    {
+        let has_vertices = stated.vertex_count > 0;
+        unit.put(qdist_unit_f64 {
+            value: Some(unit_value::<Self>),
+            point: Some(unit_point::<Self>),
+            vertex: if has_vertices { Some(unit_vertex::<Self>) } else { None },
+            mirrored: if has_mirrors { Some(unit_mirrored::<Self>) } else { stated.mirrored },
+            user: shape.user(),
+            ..stated
+        })
+    }
+}
+
+/// NaN says that the arguments are wrong.
+unsafe extern "C" fn unit_value<S: AnswersUnit>(user: *mut c_void, direction: *const f64) -> f64 {
+    // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
+    let (of, u) = unsafe { (In::<S>::new(user.cast()), In::new(direction)) };
+    let ask = || {
+        let of = of.get()?;
+        of.value(u.array(Some(of.dimension()?))?)
+    };
+    let answer: Check<f64> = ask();
+    answer.unwrap_or(f64::NAN)
+}
+
+unsafe extern "C" fn unit_point<S: AnswersUnit>(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
+    // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
+    let (of, u, room) = unsafe { (In::<S>::new(user.cast()), In::new(direction), Out::new(point)) };
+    let ask = || {
+        let of = of.get()?;
+        let n = of.dimension()?;
+        put_first(&room, &of.point(u.array(Some(n))?)?, n)
+    };
+    status(ask())
+}
+
+unsafe extern "C" fn unit_vertex<S: AnswersUnit>(user: *mut c_void, index: u32, point: *mut f64) -> i32 {
+    // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
+    let (of, room) = unsafe { (In::<S>::new(user.cast()), Out::new(point)) };
+    let ask = || {
+        let of = of.get()?;
+        put_first(&room, &of.vertex(index as usize)?, of.dimension()?)
+    };
+    status(ask())
+}
+
+unsafe extern "C" fn unit_mirrored<S: AnswersUnit>(user: *mut c_void, signs: u32) -> i32 {
+    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
+    let of = unsafe { In::<S>::new(user.cast()) };
+    i32::from(of.get().is_ok_and(|of| of.mirrored(signs)))
+}

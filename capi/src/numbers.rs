@@ -1,0 +1,146 @@
+//! Numbers of the caller, checked, and loops over run-time dimensions.
+
+use super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NONFINITE, from_shape};
+use qdist::Real;
+use qdist::internal::{check_numbers, check_sizes};
+
+/// The largest dimension.
+pub const MAX_DIMENSION: usize = 6;
+/// The most points of a simplex.
+pub const MAX_POINTS: usize = MAX_DIMENSION + 1;
+
+// ------------------------------------------------------------------------------------------------------------ numbers
+
+/// A length: finite, not too large, >= 0.
+#[inline(always)]
+pub fn length<T: Real>(x: T) -> Check<T> {
+    lengths([x]).map(|()| x)
+}
+
+/// Lengths: each finite, not too large, >= 0.
+#[inline(always)]
+pub fn lengths<T: Real, const K: usize>(list: [T; K]) -> Check {
+    check_sizes(list.iter()).map_err(from_shape)
+}
+
+/// Lengths: finite, not too large, >= 0, and not all zero.
+pub fn semi_axes<T: Real>(list: &[T]) -> Check {
+    let mut most = T::zero();
+    for &x in list {
+        most = most.at_least(length(x)?);
+    }
+    if most > T::zero() { Ok(()) } else { Err(QDIST_ERROR_ARGUMENT) }
+}
+
+/// Coordinates: finite and not too large.
+pub fn coordinates<T: Real>(list: &[T]) -> Check {
+    check_numbers(list.iter()).map_err(from_shape)
+}
+
+pub fn finite<T: Real>(list: &[T]) -> Check {
+    if list.iter().all(|x| x.finite()) { Ok(()) } else { Err(QDIST_ERROR_NONFINITE) }
+}
+
+pub fn flag(x: u32) -> Check<bool> {
+    match x {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(QDIST_ERROR_ARGUMENT),
+    }
+}
+
+/// A run-time dimension, 2 to 6.
+#[inline]
+pub fn dimension(n: u32) -> Check<usize> {
+    if (2..=MAX_DIMENSION as u32).contains(&n) { Ok(n as usize) } else { Err(QDIST_ERROR_DIMENSION) }
+}
+
+/// The first `n` numbers of an array.
+#[inline]
+pub fn first<S>(list: &[S], n: usize) -> Check<&[S]> {
+    list.get(..n).ok_or(QDIST_ERROR_DIMENSION)
+}
+
+/// A list in an array, filled up with zeros.
+#[inline]
+pub fn padded<T: Real>(list: impl Iterator<Item = T>) -> [T; MAX_DIMENSION] {
+    let mut all = [T::zero(); MAX_DIMENSION];
+    for (to, x) in all.iter_mut().zip(list) {
+        *to = x;
+    }
+    all
+}
+
+/// `a.b`
+#[inline(always)]
+pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::zero(), |s, (&x, &y)| s + x * y)
+}
+
+/// max |x_i|
+#[inline(always)]
+pub fn largest<T: Real>(list: &[T]) -> T {
+    list.iter().fold(T::zero(), |m, &x| m.at_least(x).at_least(-x))
+}
+
+/// An upper bound of the largest norm of the points, for coordinates that passed [`coordinates`].
+pub fn reach<T: Real>(points: &[T], dimension: usize) -> T {
+    let size = largest(points);
+    if !(size > T::zero()) {
+        return tiny();
+    }
+    // Scaled, so that no square overflows.
+    let mut most = T::zero();
+    for point in points.chunks_exact(dimension.max(1)) {
+        most = most.at_least(point.iter().fold(T::zero(), |s, &x| s + (x / size) * (x / size)));
+    }
+    size * most.root() * (T::one() + T::count(32) * T::ROUNDOFF)
+}
+
+/// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow. (Two roundoffs of it are
+/// still normal: 1e-276, for `float` 3e-24.)
+#[inline(always)]
+pub fn tiny<T: Real>() -> T {
+    T::SAFE_SQUARE
+}
+
+/// The direction, scaled if its products could leave the range of the format. `store` keeps the scaled one.
+#[inline(always)]
+pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
+    let size = largest(u);
+    let limit = T::count(1 << 16);
+    if (size < limit && size * limit > T::one()) || !(size > T::zero()) { u } else { scaled(u, size, store) }
+}
+
+#[cold]
+#[inline(never)]
+fn scaled<'a, T: Real>(u: &'a [T], size: T, store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
+    for (to, &from) in store.iter_mut().zip(u) {
+        *to = from / size;
+    }
+    store.get(..u.len()).unwrap_or(u)
+}
+
+// ------------------------------------------------------------------------------------------------- lists of points
+
+/// A point and its product with the direction.
+type Candidate<'a, T> = (T, &'a [T]);
+
+/// The point of a list of `dimension` coordinates each that is farthest along `u`, the first one of equals, and its product
+/// with `u`.
+pub fn farthest<'a, T: Real>(points: &'a [T], dimension: usize, u: &[T]) -> Option<Candidate<'a, T>> {
+    let mut best: Option<Candidate<'a, T>> = None;
+    for point in points.chunks_exact(dimension.max(1)) {
+        let height = dot(point, u);
+        if best.is_none_or(|(most, _)| height > most) {
+            best = Some((height, point));
+        }
+    }
+    best
+}
+
+/// Coordinates as points.
+#[inline(always)]
+pub fn as_points<T, const N: usize>(list: &[T]) -> &[[T; N]] {
+    list.as_chunks::<N>().0
+}
