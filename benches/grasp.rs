@@ -198,7 +198,7 @@ fn main() -> std::process::ExitCode {
     for contacts in [1, 2] {
         let hands: Vec<Vec<Finger<f64>>> = (0..count.min(20)).map(|_| hand(&mut dice, contacts)).collect();
         for relative in [1e-2, 1e-3] {
-            let options = Options { relative, max_iterations: 2000, ..Options::default() };
+            let options = Options { relative, max_iterations: Some(2000), ..Options::default() };
             let seconds = times(&hands, |fingers| {
                 memory.solver().solve(&WrenchSet::new(fingers, Norm::LInf), &Ball::unit(), &options);
             });

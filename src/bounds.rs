@@ -121,7 +121,7 @@ impl<T: Real> Tolerance<T> {
 }
 
 /// Turns lengths measured on the core of A into bounds on d_Q(A).
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Bounds<T> {
     /// Error of the support function, e, in any direction.
     pub support_error: T,
@@ -134,7 +134,7 @@ pub struct Bounds<T> {
 }
 
 /// What is known of A along each coordinate axis, for margins by direction.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Axes<T, const N: usize> {
     /// Errors of the support function, e_i.
     pub errors: Vector<T, N>,

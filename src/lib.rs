@@ -94,7 +94,7 @@
 //!   in three-dimensional space*, 1988. P. Wolfe, *Finding the nearest point in a polytope*, 1976.
 //! * W. Blaschke, *Kreis und Kugel*, 1916 (balls that roll inside convex bodies).
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
-#![warn(missing_docs)]
+#![warn(missing_docs, missing_debug_implementations)]
 
 mod bounds;
 #[cfg(feature = "grasp")]

@@ -6,8 +6,17 @@
 
 use nalgebra::RealField;
 
-/// A floating-point scalar: `f32` or `f64`.
-pub trait Real: RealField + Copy {
+/// Bounds are proved for the arithmetic of these two types, and hold for no other.
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A floating-point scalar: `f32` or `f64`. No other type can be one.
+pub trait Real: RealField + Copy + sealed::Sealed {
+    /// 0, where memory is made before the program runs.
+    const ZERO: Self;
     /// Unit roundoff u: half the distance between 1 and the next number. Every elementary operation,
     /// the square root included, has relative error at most u.
     const ROUNDOFF: Self;
@@ -53,6 +62,7 @@ pub trait Real: RealField + Copy {
 macro_rules! real {
     ($t:ident, $sqrt:path, $tolerance:expr, $split:expr, $exponent:expr) => {
         impl Real for $t {
+            const ZERO: Self = 0.0;
             const ROUNDOFF: Self = $t::EPSILON / 2.0;
             const HUGE: Self = $t::MAX;
             const TINY: Self = $t::MIN_POSITIVE;

@@ -46,7 +46,7 @@ impl Tolerance {
         }
     }
 
-    fn options<T: Real, const N: usize>(self) -> Options<T, N> {
+    fn options<T: Real, const N: usize>(self) -> Options<'static, T, N> {
         let (absolute, relative) = match self {
             Tolerance::Absolute(eps) => (T::of(eps), T::zero()),
             Tolerance::Relative(eps) => (T::zero(), T::of(eps)),

@@ -72,7 +72,7 @@ impl<T: Real> Solver<'_, T, 6> {
     /// Is the origin in the interior of the wrench set `w`?
     ///
     /// Ends at the first ball in W, or the first direction along which W has no extent; what rounding has to do with it is told at [`Closure`]. Of
-    /// `options`, `max_iterations` and `guess` count.
+    /// `options`, `max_iterations`, `guess` and `interrupt` count.
     ///
     /// Cost: that of the start and a few points; some 10 to 100 support calls, tens of microseconds on a desktop machine. Grasps that rounding
     /// leaves undecided take three such queries, and the last of them up to 200 points.
@@ -99,17 +99,7 @@ impl<T: Real> Solver<'_, T, 6> {
     /// assert!((direction[3].abs() - 1.0) < 1e-9);
     /// # Ok::<(), ContactError>(())
     /// ```
-    pub fn force_closure(&mut self, w: &dyn Support<T, 6>, options: &Options<T, 6>) -> Closure<T> {
-        self.force_closure_until(w, options, None)
-    }
-
-    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
-    pub fn force_closure_until(
-        &mut self,
-        w: &dyn Support<T, 6>,
-        options: &Options<T, 6>,
-        interrupt: Option<&dyn Fn() -> bool>,
-    ) -> Closure<T> {
+    pub fn force_closure(&mut self, w: &dyn Support<T, 6>, options: &Options<'_, T, 6>) -> Closure<T> {
         let even = Even::new(w);
         let margin = even.error() + T::count(16) * T::ROUNDOFF * even.extent();
         let mut guess = options.guess.map(|u| even.direction_in(&u));
@@ -117,12 +107,12 @@ impl<T: Real> Solver<'_, T, 6> {
         for halves in THRESHOLDS {
             let threshold = Some((margin * T::count(halves) / T::count(2)).at_least(T::TINY));
             let limit = match (options.max_iterations, halves) {
-                (0, 0) => MOST,
-                (own, 0) => own.min(MOST),
+                (None, 0) => Some(MOST),
+                (Some(own), 0) => Some(own.min(MOST)),
                 (own, _) => own,
             };
             let options = Options { threshold, guess, max_iterations: limit, ..*options };
-            let answer = self.solve_until(&even, &Ball::unit(), &options, interrupt);
+            let answer = self.solve(&even, &Ball::unit(), &options);
             weakest = even.direction_out(&answer.direction);
             let radius = answer.lower * even.least();
             if radius >= T::TINY {

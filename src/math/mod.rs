@@ -5,11 +5,16 @@ mod two_words;
 
 use crate::scalar::Real;
 pub(crate) use accumulator::Accumulator;
-use nalgebra::SVector;
+use nalgebra::{ArrayStorage, SVector};
 pub use two_words::TwoWords;
 
 /// A vector of dimension `N`.
 pub type Vector<T, const N: usize> = SVector<T, N>;
+
+/// The origin, for memory that is made before the program runs.
+pub(crate) const fn zeros<T: Real, const N: usize>() -> Vector<T, N> {
+    Vector::from_array_storage(ArrayStorage([[T::ZERO; N]; 1]))
+}
 
 /// Euclidean norm, also where squares under- or overflow.
 #[inline(always)]

@@ -16,7 +16,7 @@
 //! the latter, and that no facet turned inside out on the way, which [`Polytope::is_sound`] tells.
 
 use crate::bounds::Axes;
-use crate::math::{Vector, norm};
+use crate::math::{Vector, norm, zeros};
 use crate::polytope::simplex::{Simplex, Vertex};
 use crate::scalar::Real;
 
@@ -156,6 +156,11 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
     #[allow(clippy::type_complexity)]
     pub fn memory(&mut self) -> (&mut [Vertex<T, N>], &mut [Facet<T, N>], &mut [Entry<T>]) {
         (self.vertices, self.facets, self.heap.memory())
+    }
+
+    /// The most vertices and the most facets that there is room for.
+    pub fn capacities(&self) -> [usize; 2] {
+        [self.vertices.len(), self.facets.len()]
     }
 
     /// Forgets everything, in constant time.
@@ -376,11 +381,11 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
 
 impl<T: Real, const N: usize> Facet<T, N> {
     /// Fills untouched memory.
-    pub fn empty() -> Self {
+    pub const fn empty() -> Self {
         Facet {
-            normal: Vector::zeros(),
-            offset: T::zero(),
-            key: T::zero(),
+            normal: zeros(),
+            offset: T::ZERO,
+            key: T::ZERO,
             vertices: [NONE; N],
             neighbors: [NONE; N],
             link: NONE,

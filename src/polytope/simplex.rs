@@ -3,7 +3,7 @@
 //! It rests on Gram-Schmidt over at most N edges, with no matrix to invert and nothing to pivot on that could vanish
 //! unnoticed.
 
-use crate::math::{Vector, norm, unit};
+use crate::math::{Vector, norm, unit, zeros};
 use crate::scalar::Real;
 use heapless::Vec;
 
@@ -21,16 +21,15 @@ pub struct Vertex<T, const N: usize> {
 
 impl<T: Real, const N: usize> Vertex<T, N> {
     /// Fills untouched memory.
-    pub fn empty() -> Self {
-        Vertex { point: Vector::zeros(), witness: Vector::zeros() }
+    pub const fn empty() -> Self {
+        Vertex { point: zeros(), witness: zeros() }
     }
 }
 
 /// A simplex with the barycentric weights of its point nearest to the origin.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Simplex<T, const N: usize> {
-    /// 1 to N + 1 vertices with their weights.
-    pub corners: Vec<Corner<T, N>, MAX_CORNERS>,
+    pub(crate) corners: Vec<Corner<T, N>, MAX_CORNERS>,
 }
 
 /// A vertex and its barycentric weight.
@@ -137,6 +136,11 @@ impl<T: Real, const N: usize> Simplex<T, N> {
         let mut corners = Vec::new();
         let _ = corners.push(Corner { vertex, weight: T::one() });
         Simplex { corners }
+    }
+
+    /// 1 to N + 1 vertices with their weights.
+    pub fn corners(&self) -> &[Corner<T, N>] {
+        &self.corners
     }
 
     /// The point that the weights stand for.

@@ -55,7 +55,7 @@ impl<T: Real, const N: usize, G: UnitSet<T, N> + ?Sized> UnitSet<T, N> for &G {
 /// `error`: N/2 + 1 roundoffs of the norm, one of the product: `(N + 4) u radius`.
 ///
 /// ```
-/// use qdist::{qset::{Ball, Unit set}, Vector};
+/// use qdist::{qset::{Ball, UnitSet}, Vector};
 /// let q = Ball::new(2.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([0.0, 3.0, 4.0])).unwrap(), 10.0);
 /// ```
@@ -107,7 +107,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for Ball<T> {
 ///
 /// ```
 /// use nalgebra::SMatrix;
-/// use qdist::{qset::{UnitEllipsoid, Unit set}, Vector};
+/// use qdist::{qset::{UnitEllipsoid, UnitSet}, Vector};
 /// let q = UnitEllipsoid::new(Vector::from([2.0, 0.0]), SMatrix::<f64, 2, 2>::new(0.0, -1.0, 1.0, 0.0)).unwrap();
 /// assert_eq!(q.value(&Vector::from([7.0, 1.0])).unwrap(), 2.0);
 /// ```
@@ -186,7 +186,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for UnitEllipsoid<T, N> {
 /// `error`: N roundoffs of the sum, which is at most |half|: `(N + 1) u |half|`.
 ///
 /// ```
-/// use qdist::{qset::{UnitBox, Unit set}, Vector};
+/// use qdist::{qset::{UnitBox, UnitSet}, Vector};
 /// let q = UnitBox::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 3.0);
 /// ```
@@ -246,7 +246,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for UnitBox<T, N> {
 /// `error`: one rounding of a product: `2 u max(semi)`.
 ///
 /// ```
-/// use qdist::{qset::{CrossPolytope, Unit set}, Vector};
+/// use qdist::{qset::{CrossPolytope, UnitSet}, Vector};
 /// let q = CrossPolytope::new(Vector::from([1.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 2.0);
 /// ```
@@ -318,7 +318,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for CrossPolytope<T, N> {
 /// `error`: N roundoffs of the product: `(N + 1) u |end|`.
 ///
 /// ```
-/// use qdist::{qset::{Unit set, Segment}, Vector};
+/// use qdist::{qset::{UnitSet, Segment}, Vector};
 /// let q = Segment::new(Vector::from([0.0, 2.0])).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 2.0);
 /// assert_eq!(q.value(&Vector::from([1.0, -1.0])).unwrap(), 0.0);
@@ -364,7 +364,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for Segment<T, N> {
 /// `error`: that of [`Points`] for the choice, and N roundoffs of the product: `(3 N + 4) u max |q|`.
 ///
 /// ```
-/// use qdist::{qset::{Unit set, Vertices}, Vector};
+/// use qdist::{qset::{UnitSet, Vertices}, Vector};
 /// let corners = [[1.0, 0.0], [0.0, 3.0]];
 /// let q = Vertices::new(&corners).unwrap();
 /// assert_eq!(q.value(&Vector::from([1.0, 1.0])).unwrap(), 3.0);
@@ -409,7 +409,7 @@ impl<T: Real, const N: usize> UnitSet<T, N> for Vertices<'_, T, N> {
 /// A unit set given by a closure `u -> h_Q(u)` and the bound of its rounding error.
 ///
 /// ```
-/// use qdist::{qset::{Unit set, UnitSetFn}, Vector};
+/// use qdist::{qset::{UnitSet, UnitSetFn}, Vector};
 /// let q = UnitSetFn::new(|u: &Vector<f64, 2>| Ok(u[0].abs()), 0.0).unwrap();
 /// assert_eq!(q.value(&Vector::from([-2.0, 5.0])).unwrap(), 2.0);
 /// ```

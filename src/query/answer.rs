@@ -1,12 +1,16 @@
 //! What a query returns: an outcome, a bracket, and the evidence for both ends.
 
+use core::fmt;
+
 use crate::math::{Vector, norm};
-use crate::polytope::simplex::Simplex;
+use crate::polytope::simplex::{Simplex, Vertex};
 use crate::qset::UnitSet;
 use crate::scalar::Real;
+use crate::support::Failure;
 
 /// What a run concluded. Whatever it is, the bracket holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// The bracket is as narrow as asked for, and the origin is inside A: d > 0.
     Converged,
@@ -36,6 +40,25 @@ pub enum Outcome {
     Unbounded,
 }
 
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Outcome::Converged => "converged",
+            Outcome::Above => "above",
+            Outcome::Below => "below",
+            Outcome::Separated => "separated",
+            Outcome::Touching => "touching",
+            Outcome::Precision => "precision",
+            Outcome::Capacity => "capacity",
+            Outcome::Iterations => "iterations",
+            Outcome::Interrupted => "interrupted",
+            Outcome::Degenerate => "degenerate",
+            Outcome::SupportFailed => "support failed",
+            Outcome::Unbounded => "unbounded",
+        })
+    }
+}
+
 impl Outcome {
     /// Did rounding end the run?
     pub(crate) fn is_open(self) -> bool {
@@ -45,6 +68,7 @@ impl Outcome {
 
 /// How a query was answered: what it is decides (see [`Solver::solve`](crate::Solver::solve)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Plan {
     /// By the distance of the core from the origin: A has a ball term, and the origin is outside of what it is swept over.
     Distance,
@@ -60,11 +84,25 @@ pub enum Plan {
     Cones,
 }
 
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Plan::Distance => "distance",
+            Plan::Meridian => "meridian",
+            Plan::Rays => "rays",
+            Plan::Warm => "warm",
+            Plan::Expansion => "expansion",
+            Plan::Cones => "cones",
+        })
+    }
+}
+
 /// The result of a query.
 ///
 /// Lengths are in the units of A; `lower` and `upper` are multiples of Q where positive, and minus Euclidean distances where
 /// negative (in units of the radius where Q is a ball).
-#[derive(Clone)]
+#[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Answer<T, const N: usize> {
     /// What was concluded.
     pub outcome: Outcome,
@@ -100,11 +138,35 @@ pub struct Answer<T, const N: usize> {
     pub cones: u32,
     /// With [`Plan::Cones`]: the most halvings of an orthant, of at most 192.
     pub splits: u32,
-    /// The code of a [`Failure`](crate::support::Failure), else 0.
-    pub failure: i32,
+    /// Why a set gave no point, with outcome `SupportFailed`.
+    pub failure: Option<Failure>,
 }
 
 impl<T: Real, const N: usize> Answer<T, N> {
+    /// The answer to no query: nothing is known of d.
+    #[must_use]
+    pub fn unknown() -> Self {
+        Answer {
+            outcome: Outcome::Interrupted,
+            lower: -T::HUGE,
+            upper: T::HUGE,
+            direction: Vector::zeros(),
+            support: Vector::zeros(),
+            unit: T::one(),
+            rival: None,
+            plan: Plan::Expansion,
+            witness: Simplex::new(Vertex::empty()),
+            dimension: N,
+            iterations: 0,
+            support_calls: 0,
+            vertices: 0,
+            facets: 0,
+            cones: 0,
+            splits: 0,
+            failure: None,
+        }
+    }
+
     /// Is d >= `threshold`? `None` when the bracket does not tell.
     pub fn is_at_least(&self, threshold: T) -> Option<bool> {
         if self.lower >= threshold { Some(true) } else { (self.upper < threshold).then_some(false) }

@@ -142,7 +142,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             facets: 0,
             cones: 0,
             splits: 0,
-            failure: if let Stop::Failed(code) = stop { code } else { 0 },
+            failure: if let Stop::Failed(code) = stop { Some(Failure(code)) } else { None },
         }
     }
 

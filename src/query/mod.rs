@@ -1,6 +1,8 @@
 //! The state of one query: what has been asked of A and Q, the best upper bound so far, and how all of it becomes an
 //! [`Answer`].
 
+use core::fmt;
+
 use crate::bounds::{Axes, Bounds};
 use crate::math::{Vector, finite};
 use crate::polytope::simplex::Vertex;
@@ -18,42 +20,61 @@ mod work;
 pub(crate) use work::Work;
 
 /// How a query ends, and where it looks first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options<T, const N: usize> {
+///
+/// Fields may be added: write `Options { relative: 1e-3, ..Options::default() }`.
+#[derive(Clone, Copy)]
+pub struct Options<'a, T, const N: usize> {
     /// Stop when upper - lower <= max(absolute, relative |d|). Default 0.
     pub absolute: T,
     /// See `absolute`. Default 1e-6 in `f64`, 1e-4 in `f32`.
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most points to add; 0, the default: 50,000, and 64 for each vertex of a polytopal Q. (What a query needs grows with a power
+    /// Most points to add. `None`, the default: 50,000, and 64 for each vertex of a polytopal Q. (What a query needs grows with a power
     /// of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth; how long that takes, `examples/worst_case.rs` measures.)
-    pub max_iterations: u32,
+    pub max_iterations: Option<u32>,
     /// The direction to look in first (any length, not zero): where the answer was last time.
     pub guess: Option<Vector<T, N>>,
+    /// The deadline: asked before every iteration, it ends the query by `true`, with outcome
+    /// [`Interrupted`](crate::Outcome::Interrupted) and the best bracket so far.
+    pub interrupt: Option<&'a dyn Fn() -> bool>,
 }
 
-impl<T: Real, const N: usize> Default for Options<T, N> {
+impl<T: fmt::Debug, const N: usize> fmt::Debug for Options<'_, T, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Options")
+            .field("absolute", &self.absolute)
+            .field("relative", &self.relative)
+            .field("threshold", &self.threshold)
+            .field("max_iterations", &self.max_iterations)
+            .field("guess", &self.guess)
+            .field("interrupt", &self.interrupt.map(|_| "..."))
+            .finish()
+    }
+}
+
+impl<T: Real, const N: usize> Default for Options<'_, T, N> {
     fn default() -> Self {
         Options {
             absolute: T::zero(),
             relative: T::RELATIVE_TOLERANCE,
             threshold: None,
-            max_iterations: 0,
+            max_iterations: None,
             guess: None,
+            interrupt: None,
         }
     }
 }
 
-impl<T: Real, const N: usize> Options<T, N> {
+impl<T: Real, const N: usize> Options<'_, T, N> {
     /// What is left of the limit after so many iterations; `None`: nothing.
     pub(crate) fn after(&self, iterations: u32) -> Option<Self> {
         let left = self.limit().saturating_sub(iterations);
-        (left > 0).then_some(Options { max_iterations: left, ..*self })
+        (left > 0).then_some(Options { max_iterations: Some(left), ..*self })
     }
 
     fn limit(&self) -> u32 {
-        if self.max_iterations == 0 { MAX_ITERATIONS } else { self.max_iterations }
+        self.max_iterations.unwrap_or(MAX_ITERATIONS)
     }
 }
 
@@ -79,7 +100,7 @@ pub(crate) struct Query<'q, T, const N: usize> {
     /// With margins by direction: what A knows of itself axis by axis.
     pub axes: Option<Axes<T, N>>,
     /// Tolerance and threshold in scaled units.
-    pub options: Options<T, N>,
+    pub options: Options<'q, T, N>,
     /// A power of two that brings the set to a size near 1, so that no product under- or overflows; 1 for sets that are
     /// near it already. All lengths of a query are scaled by it, the answer's are scaled back: both exactly.
     scale: T,
@@ -125,8 +146,6 @@ pub(crate) struct Query<'q, T, const N: usize> {
     floor_reach: T,
     /// The limit that was reached: from then on nothing is added.
     stopped: Option<Stop>,
-    /// Says when to stop.
-    pub interrupt: Option<&'q dyn Fn() -> bool>,
 }
 
 /// Lengths as sets state them: finite and >= 0.
@@ -141,7 +160,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
         a: &'q dyn Support<T, N>,
         q: &'q dyn UnitSet<T, N>,
         radius: T,
-        options: Options<T, N>,
+        options: Options<'q, T, N>,
     ) -> (Self, Result<(), Failure>) {
         let (extent, support_error, unit_error) = (a.extent(), a.error(), q.error());
         let ball = q.ball_radius();
@@ -179,7 +198,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             is_thin: false,
             exhaustive: false,
             iterations: 0,
-            limit: options.limit().saturating_add(if options.max_iterations == 0 {
+            limit: options.limit().saturating_add(if options.max_iterations.is_none() {
                 MAX_ITERATIONS_PER_VERTEX.saturating_mul(q.vertex_count() as u32)
             } else {
                 0
@@ -191,7 +210,6 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             floor: T::zero(),
             floor_reach: T::HUGE,
             stopped: None,
-            interrupt: None,
         };
         (query, checked)
     }
@@ -550,7 +568,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Has the caller set a limit?
     pub fn may_be_cut_short(&self) -> bool {
-        self.options.max_iterations != 0 || self.interrupt.is_some()
+        self.options.max_iterations.is_some() || self.options.interrupt.is_some()
     }
 
     /// Counts an iteration; tells why there must be none when a limit is reached.
@@ -567,7 +585,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
 
     /// Asks the caller, unless a limit has been reached; counts nothing.
     pub fn interrupted(&mut self) -> Option<Stop> {
-        if self.stopped.is_none() && self.interrupt.is_some_and(|interrupt| interrupt()) {
+        if self.stopped.is_none() && self.options.interrupt.is_some_and(|interrupt| interrupt()) {
             self.stopped = Some(Stop::Interrupted);
         }
         self.stopped

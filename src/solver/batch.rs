@@ -11,7 +11,8 @@ use crate::solver::Solver;
 use crate::support::Support;
 
 /// The deepest of many sets.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Best<T, const N: usize> {
     /// Its number in the batch, from 0.
     pub index: usize,
@@ -40,7 +41,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         sets: impl IntoIterator<Item = S>,
         q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
+        options: &Options<'_, T, N>,
         mut each: impl FnMut(usize, Answer<T, N>) -> bool,
     ) {
         for (index, set) in sets.into_iter().enumerate() {
@@ -51,7 +52,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     }
 
     /// The set with the largest lower bound of d_Q; `None` when there are no sets. The first of several that are alike. A set is left as soon as it
-    /// is certainly not deeper than the best so far; one that is deeper is asked twice. A threshold in `options` is not used.
+    /// is certainly not deeper than the best so far; one that is deeper is asked twice. A threshold in `options` is not used;
+    /// once the deadline has passed, each set keeps the bounds that it has.
     ///
     /// ```
     /// use qdist::{Options, Workspace, qset::Ball, support::Sphere};
@@ -64,31 +66,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         sets: impl IntoIterator<Item = S>,
         q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-    ) -> Option<Best<T, N>> {
-        self.best_of_until(sets, q, options, None)
-    }
-
-    /// The same with a deadline, as in [`solve_until`](Solver::solve_until): once it has passed, each set keeps the bounds that it has.
-    pub fn best_of_until<S: Support<T, N>>(
-        &mut self,
-        sets: impl IntoIterator<Item = S>,
-        q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
     ) -> Option<Best<T, N>> {
         let full = Options { threshold: None, ..*options };
         let mut best: Option<Best<T, N>> = None;
         for (index, set) in sets.into_iter().enumerate() {
             let Some(so_far) = &mut best else {
-                let answer = self.solve_until(&set, q, &full, interrupt);
+                let answer = self.solve(&set, q, &full);
                 best = Some(Best { index, ceiling: answer.upper, answer });
                 continue;
             };
             let threshold = so_far.answer.lower;
-            let mut answer = self.solve_until(&set, q, &Options { threshold: Some(threshold), ..full }, interrupt);
+            let mut answer = self.solve(&set, q, &Options { threshold: Some(threshold), ..full });
             if answer.outcome == Outcome::Above {
-                answer = self.solve_until(&set, q, &Options { guess: Some(answer.direction), ..full }, interrupt);
+                answer = self.solve(&set, q, &Options { guess: Some(answer.direction), ..full });
             }
             so_far.ceiling = so_far.ceiling.at_least(answer.upper);
             if answer.lower > threshold {

@@ -8,6 +8,8 @@ mod span;
 pub(crate) mod warm;
 pub(crate) mod workspace;
 
+use core::fmt;
+
 use crate::bounds::Bracket;
 use crate::math::Vector;
 use crate::plan::distance::{Cloud, Inflated, Nearest, nearest};
@@ -28,6 +30,14 @@ use crate::support::{Failure, Support};
 /// A solver keeps nothing between queries; the memory is overwritten. One solver per thread.
 pub struct Solver<'w, T, const N: usize> {
     pub(crate) polytope: Polytope<'w, T, N>,
+}
+
+impl<T: Real, const N: usize> fmt::Debug for Solver<'_, T, N> {
+    /// The capacities; what the memory contains says nothing.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [vertices, facets] = self.polytope.capacities();
+        f.debug_struct("Solver").field("vertices", &vertices).field("facets", &facets).finish_non_exhaustive()
+    }
 }
 
 /// What is known when the plans that any query begins with have had their say.
@@ -60,36 +70,22 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     ///
     /// Never fails: bad input to the support function or the unit set ends with `SupportFailed` and a bracket that is
     /// true for the values that were returned.
-    pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn UnitSet<T, N>, options: &Options<T, N>) -> Answer<T, N> {
-        self.solve_until(a, q, options, None)
+    pub fn solve(&mut self, a: &dyn Support<T, N>, q: &dyn UnitSet<T, N>, options: &Options<'_, T, N>) -> Answer<T, N> {
+        self.solve_unless(a, q, options, |_| Ok(None))
     }
 
-    /// The same with a deadline: `interrupt` is asked before every iteration, and ends the query by `true` with outcome
-    /// [`Interrupted`](crate::Outcome::Interrupted) and the best bracket so far.
-    pub fn solve_until(
-        &mut self,
-        a: &dyn Support<T, N>,
-        q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
-    ) -> Answer<T, N> {
-        self.solve_unless(a, q, options, interrupt, |_| Ok(None))
-    }
-
-    /// The same, unless `known` has the answer of the query before any plan begins.
+    /// [`solve`](Self::solve), unless `known` has the answer of the query before any plan begins.
     pub(crate) fn solve_unless(
         &mut self,
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
         known: impl FnOnce(&mut Query<'_, T, N>) -> Result<Option<Answer<T, N>>, Failure>,
     ) -> Answer<T, N> {
         self.polytope.reset();
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_unit(q);
         let (mut query, checked) = Query::new(set, q, radius, *options);
-        query.interrupt = interrupt;
         let answer = match checked.and_then(|()| query.normalize()).and_then(|()| known(&mut query)) {
             Ok(Some(answer)) => return answer,
             Ok(None) => self.decide(&mut query),
@@ -97,7 +93,6 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         };
         self.look_again(answer, set, options, |solver, set, options, first, measured| {
             let (mut query, checked) = Query::new(set, q, radius, options);
-            query.interrupt = interrupt;
             solver.polytope.reset();
             solver.sharpen(&mut query, checked, first, measured).then(|| solver.decide(&mut query))
         })
@@ -123,7 +118,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
+        options: &Options<'_, T, N>,
     ) -> Answer<T, N> {
         let inflated = Inflated(a);
         let (set, radius) = inflated.for_unit(q);

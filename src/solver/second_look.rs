@@ -23,7 +23,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         answer: Answer<T, N>,
         a: &dyn Support<T, N>,
-        options: &Options<T, N>,
+        options: &Options<'_, T, N>,
         run: impl FnOnce(&mut Self, &dyn Support<T, N>, Options<T, N>, &Vector<T, N>, bool) -> Option<Answer<T, N>>,
     ) -> Answer<T, N> {
         if !answer.outcome.is_open() {

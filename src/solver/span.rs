@@ -113,23 +113,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-    ) -> Answer<T, N> {
-        self.solve_in_span_until(a, q, options, None)
-    }
-
-    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
-    pub fn solve_in_span_until(
-        &mut self,
-        a: &dyn Support<T, N>,
-        q: &dyn UnitSet<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
     ) -> Answer<T, N> {
         let mut calls = 0;
         let answer = match span(a, q, options, &mut calls) {
-            Some(span) => self.solve_within(a, q, &span, options, interrupt, &mut calls),
-            None => self.solve_until(a, q, options, interrupt),
+            Some(span) => self.solve_within(a, q, &span, options, &mut calls),
+            None => self.solve(a, q, options),
         };
         Answer { support_calls: answer.support_calls.saturating_add(calls), ..answer }
     }
@@ -140,17 +129,16 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
         span: &Span<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
         calls: &mut u32,
     ) -> Answer<T, N> {
         match span.dimension {
-            1 => solve_line(a, q, span, options, calls).unwrap_or_else(|| self.solve_until(a, q, options, interrupt)),
-            2 if N > 2 => self.within::<2>(a, q, span, options, interrupt),
-            3 if N > 3 => self.within::<3>(a, q, span, options, interrupt),
-            4 if N > 4 => self.within::<4>(a, q, span, options, interrupt),
-            5 if N > 5 => self.within::<5>(a, q, span, options, interrupt),
-            _ => self.solve_until(a, q, options, interrupt),
+            1 => solve_line(a, q, span, options, calls).unwrap_or_else(|| self.solve(a, q, options)),
+            2 if N > 2 => self.within::<2>(a, q, span, options),
+            3 if N > 3 => self.within::<3>(a, q, span, options),
+            4 if N > 4 => self.within::<4>(a, q, span, options),
+            5 if N > 5 => self.within::<5>(a, q, span, options),
+            _ => self.solve(a, q, options),
         }
     }
 
@@ -159,20 +147,20 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
         span: &Span<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
     ) -> Answer<T, N> {
         let basis = SMatrix::<T, N, K>::from_fn(|i, j| span.axes[j.min(N - 1)][i]);
-        let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve_until(a, q, options, interrupt) };
+        let Some(mut narrow) = self.in_dimension::<K>() else { return self.solve(a, q, options) };
         let options = Options {
             absolute: options.absolute,
             relative: options.relative,
             threshold: options.threshold,
             max_iterations: options.max_iterations,
             guess: options.guess.map(|guess| basis.tr_mul(&guess)),
+            interrupt: options.interrupt,
         };
         let (a, q) = (span.seen(a, &basis, span.reach), span.seen(q, &basis, span.unit_size));
-        widened(&narrow.solve_until(&a, &q, &options, interrupt), &basis)
+        widened(&narrow.solve(&a, &q, &options), &basis)
     }
 }
 
@@ -247,7 +235,7 @@ fn size<T: Real, const N: usize>(q: &dyn UnitSet<T, N>) -> Result<T, Failure> {
 fn span<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn UnitSet<T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
     calls: &mut u32,
 ) -> Option<Span<T, N>> {
     let (mut query, checked) = Query::new(a, q, a.radius(), *options);
@@ -305,7 +293,7 @@ fn solve_line<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn UnitSet<T, N>,
     span: &Span<T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
     calls: &mut u32,
 ) -> Option<Answer<T, N>> {
     let identity = SMatrix::<T, N, N>::identity();

@@ -32,10 +32,10 @@ const DISTINCT: f64 = 0.95;
 /// The state of a warm start: plain data, to be kept by the caller between the ticks of one loop over one unit set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracker<T, const N: usize> {
-    /// Minimisers of the last ticks, the latest first; unused ones are zero.
-    pub directions: [Vector<T, N>; REMEMBERED],
-    /// A lower bound of d for the set of the last tick; minus the largest number: none.
-    pub lower: T,
+    /// Minimisers of the last ticks, unit vectors, the latest first.
+    pub directions: [Option<Vector<T, N>>; REMEMBERED],
+    /// A lower bound of d for the set of the last tick, where one is known.
+    pub lower: Option<T>,
 }
 
 impl<T: Real, const N: usize> Default for Tracker<T, N> {
@@ -48,70 +48,67 @@ impl<T: Real, const N: usize> Tracker<T, N> {
     /// Nothing is known.
     #[must_use]
     pub fn new() -> Self {
-        Tracker { directions: [Vector::zeros(); REMEMBERED], lower: -T::HUGE }
+        Tracker { directions: [None; REMEMBERED], lower: None }
     }
 
     /// Takes note of an answer: its direction, its rival and its lower bound.
     pub fn remember(&mut self, answer: &Answer<T, N>) {
-        let known = answer.lower > -T::HUGE && answer.lower < T::HUGE;
-        self.lower = if known { answer.lower } else { -T::HUGE };
-        let old = self.directions;
+        self.lower = Some(answer.lower).filter(|&lower| lower > -T::HUGE && lower < T::HUGE);
+        let old = core::mem::replace(&mut self.directions, [None; REMEMBERED]);
         let mut count = 0;
-        self.directions = [Vector::zeros(); REMEMBERED];
-        for direction in core::iter::once(answer.direction).chain(answer.rival).chain(old) {
+        for direction in core::iter::once(answer.direction).chain(answer.rival).chain(old.into_iter().flatten()) {
             let known = direction.iter().any(|&x| x != T::zero());
-            let distinct = self.directions.iter().take(count).all(|u| u.dot(&direction) < T::of(DISTINCT));
+            let distinct = self.directions.iter().flatten().all(|u| u.dot(&direction) < T::of(DISTINCT));
             if known
                 && distinct
                 && let Some(slot) = self.directions.get_mut(count)
             {
-                *slot = direction;
+                *slot = Some(direction);
                 count += 1;
             }
         }
     }
 
-    /// The lower bound after the set has moved by at most `moved` (a Hausdorff distance, >= 0, in A's unit); minus the largest number where nothing is
-    /// known, or where Q has no known inner radius.
+    /// The lower bound after the set has moved by at most `moved` (a Hausdorff distance, >= 0, in A's unit); `None` where nothing is known, or where Q
+    /// has no known inner radius.
     #[must_use]
-    pub fn lower_after(&self, moved: T, q: &dyn UnitSet<T, N>) -> T {
+    pub fn lower_after(&self, moved: T, q: &dyn UnitSet<T, N>) -> Option<T> {
         let inner = Some(q.inner_radius()).filter(|inner| inner.finite()).unwrap_or(T::zero());
-        if !(self.lower > -T::HUGE) || !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
-            return -T::HUGE;
+        let before = self.lower.filter(|&lower| lower > -T::HUGE)?;
+        if !(moved >= T::zero()) || !(inner > T::zero() || moved == T::zero()) {
+            return None;
         }
         // Below 0, d is minus a distance, in units of the radius for a ball: the less favourable of the two is taken.
         let steps = |length: T| if length > T::zero() { (length / inner).at_least(length) } else { T::zero() };
-        let lower = if self.lower < T::zero() {
-            self.lower - steps(moved)
+        let lower = if before < T::zero() {
+            before - steps(moved)
         } else {
-            let left = if moved > T::zero() { self.lower - moved / inner } else { self.lower };
+            let left = if moved > T::zero() { before - moved / inner } else { before };
             if left < T::zero() { left.at_most(left * inner) } else { left }
         };
-        let positive = self.lower.at_least(T::zero());
-        let slack = (positive + moved + self.lower.abs() + lower.abs()) * (T::count(8) * T::ROUNDOFF);
+        let positive = before.at_least(T::zero());
+        let slack = (positive + moved + before.abs() + lower.abs()) * (T::count(8) * T::ROUNDOFF);
         let slack = if inner > T::zero() && inner < T::one() { slack / inner } else { slack };
-        (lower - slack).at_least(-T::HUGE)
+        Some(lower - slack).filter(|&lower| lower > -T::HUGE)
     }
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
-    /// d_Q(A) for the next tick of a loop: A is the set of the tick before, moved by at most `moved` (Hausdorff distance, in A's unit; anything that is
-    /// not known to be a bound: a negative number), and `tracker` what was remembered of it. Updates the tracker.
+    /// d_Q(A) for the next tick of a loop: A is the set of the tick before, moved by at most `moved` (Hausdorff distance >= 0, in A's unit; `None`:
+    /// anything), and `tracker` what was remembered of it. Updates the tracker.
     ///
     /// When the moved bracket already meets the options, it is the answer ([`Plan::Warm`]) for a support call per
-    /// remembered direction. Otherwise the solver goes on for `options.max_iterations`, knowing it. `interrupt` as in
-    /// [`solve_until`](Solver::solve_until).
+    /// remembered direction. Otherwise the solver goes on for `options.max_iterations`, knowing it.
     pub fn solve_warm(
         &mut self,
         tracker: &mut Tracker<T, N>,
         a: &dyn Support<T, N>,
         q: &dyn UnitSet<T, N>,
-        moved: T,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        moved: Option<T>,
+        options: &Options<'_, T, N>,
     ) -> Answer<T, N> {
-        let lower = tracker.lower_after(moved, q);
-        let answer = self.solve_unless(a, q, options, interrupt, |query| at_once(query, tracker, lower));
+        let lower = moved.and_then(|moved| tracker.lower_after(moved, q));
+        let answer = self.solve_unless(a, q, options, |query| at_once(query, tracker, lower));
         tracker.remember(&answer);
         answer
     }
@@ -121,13 +118,15 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 fn at_once<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     tracker: &Tracker<T, N>,
-    lower: T,
+    lower: Option<T>,
 ) -> Result<Option<Answer<T, N>>, Failure> {
-    query.know(lower);
-    for direction in tracker.directions.iter().filter(|u| u.iter().any(|&x| x != T::zero())) {
+    if let Some(lower) = lower {
+        query.know(lower);
+    }
+    for direction in tracker.directions.iter().flatten() {
         query.support(direction)?;
     }
-    if query.upper() >= T::HUGE || !(lower > T::zero()) {
+    if query.upper() >= T::HUGE || !lower.is_some_and(|lower| lower > T::zero()) {
         return Ok(None);
     }
     let verdict = |query: &Query<'_, T, N>| query.verdict(&Bracket { lower: -T::HUGE, upper: query.upper() });

@@ -12,6 +12,7 @@ pub const MAX_CAPACITY: usize = u16::MAX as usize;
 
 /// Why memory cannot hold a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum WorkspaceError {
     /// `max_vertices` < N + 1, `max_facets` < 2 N, or one of them above [`MAX_CAPACITY`].
     Capacity,
@@ -53,6 +54,7 @@ impl Layout {
     /// # Errors
     /// [`WorkspaceError::Capacity`].
     pub const fn new<T: Real, const N: usize>(max_vertices: usize, max_facets: usize) -> Result<Self, WorkspaceError> {
+        const { assert!(N >= 2 && N <= 6, "qdist solves in 2 to 6 dimensions") };
         if max_vertices < N + 1 || max_facets < 2 * N || max_vertices > MAX_CAPACITY || max_facets > MAX_CAPACITY {
             return Err(WorkspaceError::Capacity);
         }
@@ -172,6 +174,30 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
 /// let answer = memory.solver().solve(&cuboid, &Ball::unit(), &Options::default());
 /// assert!(answer.lower <= 1.0 && 1.0 <= answer.upper);
 /// ```
+///
+/// In a `static`, behind what the program has for a lock:
+///
+/// ```
+/// use std::sync::Mutex;
+/// use qdist::{Body, Options, Vector, Workspace, support::Sphere};
+/// static MEMORY: Mutex<Workspace<f32, 3, 64, 128>> = Mutex::new(Workspace::new());
+///
+/// let ball = Sphere::new(1.0)?;
+/// let (a, b) = (Body::at(&ball, Vector::zeros()), Body::at(&ball, Vector::from([1.5, 0.0, 0.0])));
+/// let depth = MEMORY.lock().unwrap().solver().depth(&a, &b, &Options::default());
+/// assert!(depth.lower <= 0.5 && 0.5 <= depth.upper);
+/// # Ok::<(), qdist::support::ShapeError>(())
+/// ```
+///
+/// Other dimensions than 2 to 6, and capacities below the least, do not compile:
+///
+/// ```compile_fail,E0080
+/// let memory = qdist::Workspace::<f64, 7, 64, 128>::new();
+/// ```
+///
+/// ```compile_fail,E0080
+/// let memory = qdist::Workspace::<f64, 3, 3, 128>::new(); // a tetrahedron has four vertices
+/// ```
 pub struct Workspace<T, const N: usize, const V: usize, const F: usize> {
     vertices: [Vertex<T, N>; V],
     facets: [Facet<T, N>; F],
@@ -179,8 +205,8 @@ pub struct Workspace<T, const N: usize, const V: usize, const F: usize> {
 }
 
 impl<T: Real, const N: usize, const V: usize, const F: usize> Workspace<T, N, V, F> {
-    /// Fresh memory. `V` >= N + 1 and `F` >= 2 N are checked when this is compiled.
-    pub fn new() -> Self {
+    /// Fresh memory. What it is for is checked when this is compiled: N of 2 to 6, `V` >= N + 1 and `F` >= 2 N.
+    pub const fn new() -> Self {
         const { assert!(Layout::new::<T, N>(V, F).is_ok(), "V >= N + 1, F >= 2 N, both below 65536") };
         Workspace { vertices: [Vertex::empty(); V], facets: [Facet::empty(); F], queue: [Entry::EMPTY; F] }
     }
@@ -188,6 +214,13 @@ impl<T: Real, const N: usize, const V: usize, const F: usize> Workspace<T, N, V,
     /// A solver that borrows this memory.
     pub fn solver(&mut self) -> Solver<'_, T, N> {
         Solver { polytope: Polytope::new(&mut self.vertices, &mut self.facets, &mut self.queue) }
+    }
+}
+
+impl<T, const N: usize, const V: usize, const F: usize> fmt::Debug for Workspace<T, N, V, F> {
+    /// The capacities; what the memory contains says nothing.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Workspace").field("vertices", &V).field("facets", &F).finish_non_exhaustive()
     }
 }
 

@@ -390,7 +390,7 @@ mod tests {
     fn climbs_as_high_as_it_scans(points: &[[f32; 3]], corners: usize, level: usize) {
         let mut memory = Box::new(crate::Workspace::<f32, 3, 400, 816>::new());
         let mut words = vec![0; graph_len(points.len())];
-        let graph = memory.solver().prepare_hull(points, &mut words).unwrap();
+        let graph = memory.solver().prepare_hull(points, &mut words, None).unwrap();
         let with_edges = (0..points.len()).filter(|&i| !graph.neighbors(i as u16).is_empty()).count();
         assert!((corners..=corners + level).contains(&with_edges), "{with_edges}");
         let hull = Hull::new(points, graph).unwrap();

@@ -20,6 +20,7 @@ use crate::scalar::Real;
 
 /// Why a shape cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ShapeError {
     /// A size is less than zero.
     Negative,

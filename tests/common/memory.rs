@@ -1,7 +1,7 @@
 //! A solver's memory with capacities chosen at run time.
 
-use qdist::{Answer, Depth, Options, Outcome, Real, Solver};
-use qdist::{Layout, place};
+use qdist::support::Failure;
+use qdist::{Answer, Depth, Layout, Options, Outcome, Real, Solver, place};
 use std::mem::MaybeUninit;
 
 pub struct Memory {
@@ -36,7 +36,7 @@ pub struct Seen {
     pub iterations: u32,
     pub vertices: usize,
     pub facets: usize,
-    pub failure: i32,
+    pub failure: Option<Failure>,
     pub direction_length: f64,
 }
 
@@ -71,15 +71,15 @@ impl<T: Real, const N: usize> From<&Depth<T, N>> for Seen {
 }
 
 /// The default, but for what a search by cones may take of the test's time.
-pub fn brisk<T: Real, const N: usize>() -> Options<T, N> {
-    Options { max_iterations: 2000, ..Options::default() }
+pub fn brisk<T: Real, const N: usize>() -> Options<'static, T, N> {
+    Options { max_iterations: Some(2000), ..Options::default() }
 }
 
 /// What every answer promises whatever it is about; the first broken promise as text. `vertices` and `facets` are the
 /// capacities.
 pub fn broken_promise<T: Real, const N: usize>(
     s: &Seen,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
     vertices: usize,
     facets: usize,
 ) -> Option<String> {
@@ -93,9 +93,9 @@ pub fn broken_promise<T: Real, const N: usize>(
     claim(!s.lower.is_nan() && !s.upper.is_nan(), "an end of the bracket is NaN")
         .or_else(|| claim(s.lower <= s.upper, "lower > upper"))
         .or_else(|| claim(s.vertices <= vertices && s.facets <= facets, "more memory used than there is"))
-        .or_else(|| claim(limit == 0 || s.iterations <= limit, "more iterations than allowed"))
+        .or_else(|| claim(limit.is_none_or(|limit| s.iterations <= limit), "more iterations than allowed"))
         .or_else(|| {
-            claim((s.failure != 0) == (s.outcome == Outcome::SupportFailed), "failure code and outcome disagree")
+            claim(s.failure.is_some() == (s.outcome == Outcome::SupportFailed), "failure code and outcome disagree")
         })
         .or_else(|| {
             let unbounded = s.upper >= T::HUGE.to_f64() || s.outcome == Outcome::SupportFailed;
@@ -112,12 +112,13 @@ pub fn broken_promise<T: Real, const N: usize>(
             Outcome::Below => {
                 claim(options.threshold.is_some_and(|t| s.upper < t.to_f64()), "Below, but upper >= threshold")
             }
-            Outcome::Iterations => claim(s.iterations >= limit, "Iterations, but below the limit"),
+            Outcome::Iterations => claim(s.iterations >= limit.unwrap_or(0), "Iterations, but below the limit"),
             Outcome::Interrupted => None,
             Outcome::Touching => claim(s.lower <= 0.0 && s.upper >= 0.0, "Touching, but the bracket misses 0"),
             Outcome::Precision | Outcome::Capacity => claim(s.upper >= 0.0, "apart, but not Separated"),
             Outcome::Degenerate => claim(s.lower <= 0.0, "Degenerate, but lower > 0"),
             Outcome::SupportFailed => None,
             Outcome::Unbounded => claim(s.lower >= T::HUGE.to_f64(), "Unbounded, but a lower bound that is not"),
+            _ => claim(false, "an outcome that no test knows"),
         })
 }

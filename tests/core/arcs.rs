@@ -33,7 +33,7 @@ fn rows(r: &Rotation3<f64>) -> [f64; 9] {
     std::array::from_fn(|i| r.matrix()[(i / 3, i % 3)])
 }
 
-fn depth<T: Real>(a: &BodyText, b: &BodyText, memory: &mut Memory, options: &Options<T, 3>) -> Depth<T> {
+fn depth<T: Real>(a: &BodyText, b: &BodyText, memory: &mut Memory, options: &Options<'_, T, 3>) -> Depth<T> {
     let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
     let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
     memory.solver::<T, 3>().depth(&common::body(a, &*sa), &common::body(b, &*sb), options)
@@ -424,7 +424,7 @@ fn round_profiles_cost_n_log_n() {
     assert!(r.lower <= 2.0 && 2.0 <= r.upper + 1e-8, "{r:?}");
     let mut spent = Vec::new();
     for limit in [2_000, 16_000] {
-        let options = Options { relative: 1e-12, max_iterations: limit, ..Options::default() };
+        let options = Options { relative: 1e-12, max_iterations: Some(limit), ..Options::default() };
         let start = std::time::Instant::now();
         let r = memory.solver::<f64, 3>().depth(&a, &a, &options);
         spent.push(start.elapsed().as_secs_f64());
@@ -436,12 +436,12 @@ fn round_profiles_cost_n_log_n() {
     assert!(spent[1] < 32.0 * spent[0], "{spent:?}");
     // The deadline is asked in every iteration.
     let asked = std::cell::Cell::new(0);
-    let options = Options { relative: 1e-12, ..Options::default() };
     let late = || {
         asked.set(asked.get() + 1);
         asked.get() > 100
     };
-    let r = memory.solver::<f64, 3>().depth_until(&a, &a, &options, Some(&late));
+    let options = Options { relative: 1e-12, interrupt: Some(&late), ..Options::default() };
+    let r = memory.solver::<f64, 3>().depth(&a, &a, &options);
     assert!(r.outcome == Outcome::Interrupted && r.iterations == 100, "{r:?}");
 }
 

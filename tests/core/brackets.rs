@@ -97,7 +97,7 @@ fn problems<T: Real, const N: usize>(seed: u64) -> Vec<Known<T, N>> {
 }
 
 /// The bracket contains d, and the answer is consistent in itself.
-fn holds<T: Real, const N: usize>(k: &Known<T, N>, s: &Seen, options: &Options<T, N>, memory: (usize, usize)) {
+fn holds<T: Real, const N: usize>(k: &Known<T, N>, s: &Seen, options: &Options<'_, T, N>, memory: (usize, usize)) {
     let tell = || format!("{} in {memory:?} with {options:?}: d = {:e}, {s:?}", k.name, k.d);
     if let Some(text) = broken_promise(s, options, memory.0, memory.1) {
         panic!("{text}: {}", tell());
@@ -105,7 +105,7 @@ fn holds<T: Real, const N: usize>(k: &Known<T, N>, s: &Seen, options: &Options<T
     // Below, where |d| is tiny, the difference of two sizes near 1 has been rounded.
     let blur = k.blur * k.d.abs();
     assert!(s.lower <= k.d + blur && k.d - blur <= s.upper, "the bracket is false: {}", tell());
-    assert!(s.failure == 0 && s.outcome != Outcome::SupportFailed, "{}", tell());
+    assert!(s.failure.is_none() && s.outcome != Outcome::SupportFailed, "{}", tell());
 }
 
 /// More iterations: the bracket stays true, and inside it does not get worse by more than rounding. (Outside and
@@ -115,8 +115,8 @@ fn limits<T: Real, const N: usize>() {
     let mut memory = Memory::new::<T, N>(size.0, size.1);
     for k in problems::<T, N>(31) {
         let mut best = (f64::MIN, f64::MAX);
-        for limit in 1..=40 {
-            let options = Options { max_iterations: limit, relative: T::zero(), ..brisk() };
+        for limit in 0..=40 {
+            let options = Options { max_iterations: Some(limit), relative: T::zero(), ..brisk() };
             let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
             holds(&k, &s, &options, size);
             let rounding = 4096.0 * T::ROUNDOFF.to_f64() * (1.0 + k.d.abs()) * N as f64;
@@ -151,7 +151,7 @@ every_type_and_dimension!(every_capacity_leaves_a_true_bracket, capacities);
 /// As much memory as the answer says it used is enough for the same answer.
 fn used_memory<T: Real, const N: usize>() {
     for k in problems::<T, N>(33) {
-        let options = Options { relative: T::of(1e-3), max_iterations: 60, ..brisk() };
+        let options = Options { relative: T::of(1e-3), max_iterations: Some(60), ..brisk() };
         let mut memory = Memory::new::<T, N>(256, 4096);
         let full = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
         let size = (full.vertices.max(N + 1), full.facets.max(2 * N));
@@ -175,7 +175,7 @@ fn thresholds<T: Real, const N: usize>() {
                     let options = Options {
                         threshold: Some(T::of(threshold)),
                         relative: T::of(relative),
-                        max_iterations: limit,
+                        max_iterations: Some(limit),
                         ..brisk()
                     };
                     let s = Seen::from(&memory.solver::<T, N>().solve(&*k.set, &*k.unit, &options));
@@ -282,8 +282,8 @@ fn pairs<T: Real>() {
             assert_eq!(broken_promise(&s, &options, vertices, facets), None, "{tell}");
             assert!(s.lower <= d + 4e-16 * d.abs() && d - 4e-16 * d.abs() <= s.upper, "{tell}");
         };
-        for limit in 1..=20 {
-            run(Options { max_iterations: limit, relative: T::zero(), ..brisk() }, 64, 128);
+        for limit in 0..=20 {
+            run(Options { max_iterations: Some(limit), relative: T::zero(), ..brisk() }, 64, 128);
         }
         for extra in 0..12 {
             run(Options { relative: T::zero(), ..brisk() }, 4 + extra, 6 + 2 * extra);

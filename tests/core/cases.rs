@@ -45,7 +45,7 @@ fn rounded<T: Real>(body: &BodyText) -> BodyText {
     body
 }
 
-fn run<T: Real>(case: &Case, options: &Options<T, 3>, memory: &mut Workspace<T, 3, VERTICES, FACETS>) -> Report {
+fn run<T: Real>(case: &Case, options: &Options<'_, T, 3>, memory: &mut Workspace<T, 3, VERTICES, FACETS>) -> Report {
     let points: Vec<_> = case.bodies.iter().map(|b| common::points::<T>(&b.shape)).collect();
     let shapes: Vec<_> = case.bodies.iter().zip(&points).map(|(b, p)| common::shape(&b.shape, p)).collect();
     let (a, b) = (common::body(&case.bodies[0], &*shapes[0]), common::body(&case.bodies[1], &*shapes[1]));

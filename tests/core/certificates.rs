@@ -105,7 +105,7 @@ fn general<T: Real, const N: usize>() {
             _ => (Q::Vertices(slices(&corners)), Box::new(Vertices::new(&typed_corners).unwrap())),
         };
         let moved = Rigid::new(&*shape, SMatrix::identity(), vector::<T, N>(t)).unwrap();
-        let limit = dice.pick(&[0, 0, 1, 4, 12]);
+        let limit = dice.pick(&[None, None, Some(1), Some(4), Some(12)]);
         let options = Options { max_iterations: limit, ..brisk() };
         let (vertices, facets) = (N + 1 + dice.below(60), 2 * N + dice.below(800));
         let mut memory = Memory::new::<T, N>(vertices, facets);
@@ -139,7 +139,7 @@ fn general<T: Real, const N: usize>() {
         }
 
         // The witness simplex: points of A, weights of a convex combination.
-        let corners = &answer.witness.corners;
+        let corners = answer.witness.corners();
         assert!(!corners.is_empty() && corners.len() <= N + 1, "{tell}");
         let error = moved.error().to_f64() + 4.0 * u * 4.0;
         for c in corners {
@@ -168,7 +168,7 @@ fn general<T: Real, const N: usize>() {
         // For a ball and a narrow bracket: the foot of the perpendicular on the core of A.
         if let Q::Ball(r) = q
             && matches!(answer.outcome, Outcome::Converged | Outcome::Separated)
-            && limit == 0
+            && limit.is_none()
             && seen.upper - seen.lower <= 2.0 * options.relative.to_f64() * seen.upper.abs()
         {
             let foot = answer.witness.point().iter().map(|x| x.to_f64().powi(2)).sum::<f64>().sqrt();

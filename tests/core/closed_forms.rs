@@ -52,7 +52,7 @@ fn holds<T: Real>(what: &str, s: &Seen, d: f64, want: Want) {
 fn solve<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn UnitSet<T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
 ) -> Answer<T, N> {
     let mut memory = Memory::new::<T, N>(768, 16384);
     let answer = memory.solver::<T, N>().solve(a, q, options);

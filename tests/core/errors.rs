@@ -35,7 +35,7 @@ fn the_example_of_the_readme_in_a_function_of_any_error() {
 fn a_hull_that_cannot_be_prepared_says_why() {
     let mut memory = Workspace::<f64, 3, 64, 128>::new();
     let mut prepare = |points: &[[f64; 3]], words: usize| -> Box<dyn Error> {
-        memory.solver().prepare_hull(points, &mut vec![0; words]).err().unwrap().into()
+        memory.solver().prepare_hull(points, &mut vec![0; words], None).err().unwrap().into()
     };
     assert_eq!(prepare(&[], 100).to_string(), "there are no points, or none but the origin");
     let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];

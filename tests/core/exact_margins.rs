@@ -63,7 +63,7 @@ fn ask<T: Real>(set: &Lattice, q: &dyn UnitSet<T, 3>, d: Dd, what: &str, plans: 
     }
     let mut tracker = Tracker::new();
     for _ in 0..2 {
-        let answer = large.solver().solve_warm(&mut tracker, set, q, T::zero(), &exactly, None);
+        let answer = large.solver().solve_warm(&mut tracker, set, q, Some(T::zero()), &exactly);
         holds(&answer, d, &format!("warm {what}"));
     }
 }
@@ -350,7 +350,7 @@ fn balls_in_boxes<T: Real>(seed: u64) {
             let options = Options { relative: T::of(relative), ..Options::default() };
             let answer = memory.solver().solve_by_expansion(&set, &cuboid, &options);
             holds(&answer, d, &format!("{case} by expansion"));
-            let answer = memory.solver().solve(&set, &cuboid, &Options { max_iterations: 100, ..options });
+            let answer = memory.solver().solve(&set, &cuboid, &Options { max_iterations: Some(100), ..options });
             holds(&answer, d, &format!("{case}"));
         }
     }
@@ -458,8 +458,8 @@ fn moves<T: Real>(seed: u64) {
         let lower = T::of(dice.decade(-3.0, 3.0) * dice.pick(&[1.0, 1.0, -1.0]));
         let near = lower.to_f64().abs() * inner.to_f64() * dice.decade(-2.0, 0.3);
         let moved = T::of(dice.pick(&[near, dice.clone().decade(-3.0, 3.0), 0.0]));
-        let tracker = Tracker::<T, 3> { lower, ..Tracker::new() };
-        let left = Dd::new(tracker.lower_after(moved, &Ball::new(inner).unwrap()).to_f64());
+        let tracker = Tracker::<T, 3> { lower: Some(lower), ..Tracker::new() };
+        let left = Dd::new(tracker.lower_after(moved, &Ball::new(inner).unwrap()).unwrap().to_f64());
         let [inner, lower, moved] = [inner, lower, moved].map(|x| Dd::new(x.to_f64()));
         // Below 0, the less favourable of both units.
         let truth = if lower > Dd::ZERO {
@@ -492,9 +492,9 @@ fn a_floor_that_is_disproved() {
         if !(d > Dd::new(1.0)) {
             continue;
         }
-        let mut tracker = Tracker::<f64, 3> { lower: d.to_f64() * dice.range(1.5, 9.0), ..Tracker::new() };
+        let mut tracker = Tracker::<f64, 3> { lower: Some(d.to_f64() * dice.range(1.5, 9.0)), ..Tracker::new() };
         let mut memory = Workspace::<f64, 3, 64, 128>::new();
-        let answer = memory.solver().solve_warm(&mut tracker, &set, &Ball::unit(), 0.0, &Options::default(), None);
+        let answer = memory.solver().solve_warm(&mut tracker, &set, &Ball::unit(), Some(0.0), &Options::default());
         holds(&answer, d, "disproved");
         assert_eq!(answer.outcome, Outcome::Converged);
     }

@@ -36,7 +36,7 @@ fn ask<T: Real>(points: Vec<Point>, vertices: &[Point], far: f64, what: &str) ->
     let (mut least, mut asked) = (Memory::new::<T, 3>(4, 6), 0);
     for sign in [1.0, -1.0] {
         for relative in [T::RELATIVE_TOLERANCE, T::of(1e-3), T::of(0.3)] {
-            for max_iterations in [0, 500] {
+            for max_iterations in [None, Some(500)] {
                 set.set.lean = Lean::By(sign * 40.0 * T::ROUNDOFF.to_f64() * far);
                 set.seen.set(0.0);
                 let options = Options { relative, max_iterations, ..Options::default() };

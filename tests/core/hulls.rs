@@ -176,7 +176,7 @@ fn climbs<T: Real>(points: &[[T; 3]], dice: &mut Dice) -> Option<f64> {
     let mut memory = Memory::new::<T, 3>(4, (2 * count).max(6));
     let mut solver = memory.solver::<T, 3>();
     let mut words = vec![7; graph_len(count)];
-    let small = solver.prepare_hull(points, &mut words);
+    let small = solver.prepare_hull(points, &mut words, None);
     let (mut wide, mut facets) = (vec![9u32; large_graph_len(count)], vec![HullFacet::EMPTY; hull_facets(count)]);
     let large = prepare_hull(points, &mut wide, &mut facets, None);
     match (small, large) {
@@ -306,16 +306,16 @@ fn words_of_16_bits_hold_what_is_promised() {
     // As many vertices as promised, and the 30,001 that are more but fit.
     for count in [<u16 as Word>::MAX_POINTS, 30_001] {
         let sphere: Vec<_> = (0..count).map(|k| on_sphere(k, count)).collect();
-        let graph = solver.prepare_hull(&sphere, &mut words).unwrap();
+        let graph = solver.prepare_hull(&sphere, &mut words, None).unwrap();
         assert!((0..count as u16).all(|i| !graph.neighbors(i).is_empty()));
     }
     let sphere: Vec<_> = (0..40_000).map(|k| on_sphere(k, 40_000)).collect();
-    assert_eq!(solver.prepare_hull(&sphere, &mut words).unwrap_err(), GraphError::Points);
+    assert_eq!(solver.prepare_hull(&sphere, &mut words, None).unwrap_err(), GraphError::Points);
     // As many points as words can number, few of which are vertices; one more is too many.
     let mut dice = Dice::new(4);
     let cube: Vec<_> = (0..65_535).map(|_| [dice.signed(), dice.signed(), dice.signed()]).collect();
-    assert!(solver.prepare_hull(&cube[1..], &mut words).is_ok());
-    assert_eq!(solver.prepare_hull(&cube, &mut words).unwrap_err(), GraphError::Points);
+    assert!(solver.prepare_hull(&cube[1..], &mut words, None).is_ok());
+    assert_eq!(solver.prepare_hull(&cube, &mut words, None).unwrap_err(), GraphError::Points);
 }
 
 #[test]

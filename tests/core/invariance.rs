@@ -107,7 +107,7 @@ impl Placed {
     }
 }
 
-fn depth_with<T: Real>(a: &Placed, b: &Placed, options: &Options<T, 3>) -> Depth<T> {
+fn depth_with<T: Real>(a: &Placed, b: &Placed, options: &Options<'_, T, 3>) -> Depth<T> {
     let mut memory = Memory::new::<T, 3>(256, 512);
     a.with(|a| b.with(|b| memory.solver::<T, 3>().depth(a, b, options)))
 }
@@ -183,7 +183,7 @@ fn units_from_1e_minus_12_to_1e12() {
 fn general_scales<T: Real, const N: usize>(powers: &[i32]) {
     let mut dice = Dice::new(43);
     // Enough for a ray per corner of the box; what is cut short may end with a negative lower end, a length of another unit.
-    let options = Options { max_iterations: 600, ..Options::default() };
+    let options = Options { max_iterations: Some(600), ..Options::default() };
     for _ in 0..6 {
         let h: [f64; N] = std::array::from_fn(|_| single(dice.range(0.5, 2.0)));
         let g: [f64; N] = std::array::from_fn(|_| single(dice.range(0.5, 2.0)));

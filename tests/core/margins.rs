@@ -178,7 +178,7 @@ fn octahedra<T: Real, const N: usize>(seed: u64, widest: f64) {
         let answer = memory.solver().solve(&set, &q, &Options::default());
         let (lower, upper) = (answer.lower.to_f64(), answer.upper.to_f64());
         assert!(lower <= truth * (1.0 + 1e-14) && truth * (1.0 - 1e-14) <= upper, "{truth} {lower} {upper}");
-        let points = answer.witness.corners.iter().flat_map(|c| c.vertex.point.iter().chain(c.vertex.witness.iter()));
+        let points = answer.witness.corners().iter().flat_map(|c| c.vertex.point.iter().chain(c.vertex.witness.iter()));
         let all = points.chain(answer.direction.iter()).chain(answer.support.iter()).chain([&answer.unit]);
         assert!(all.copied().all(|x| x.finite()) && answer.direction.norm() > T::of(0.5), "{:?}", answer.direction);
         assert_eq!(answer.support_calls, set.asked.get());

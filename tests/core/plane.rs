@@ -161,7 +161,7 @@ fn by_scanning(a: &Placed, b: &Placed) -> f64 {
     at(0.5 * (low + high))
 }
 
-fn depth<T: Real>(a: &Placed, b: &Placed, options: &Options<T, 2>) -> Depth<T, 2> {
+fn depth<T: Real>(a: &Placed, b: &Placed, options: &Options<'_, T, 2>) -> Depth<T, 2> {
     let mut memory = Memory::new::<T, 2>(128, 256);
     let r = a.with(|a| b.with(|b| memory.solver::<T, 2>().depth(a, b, options)));
     assert_eq!(broken_promise(&Seen::from(&r), options, 128, 256), None, "{a:?} {b:?} {r:?}");

@@ -38,8 +38,8 @@ fn least_singular_value<const N: usize>(m: &Matrix<N>) -> f64 {
     1.0 / v.dot(&(square * v)).sqrt()
 }
 
-fn options<T: Real, const N: usize>(relative: f64, limit: u32) -> Options<T, N> {
-    Options { relative: T::of(relative), max_iterations: limit, ..Options::default() }
+fn options<T: Real, const N: usize>(relative: f64, limit: impl Into<Option<u32>>) -> Options<'static, T, N> {
+    Options { relative: T::of(relative), max_iterations: limit.into(), ..Options::default() }
 }
 
 /// A round set given point by point, its ball term unknown: an ellipsoid R D B + t, h = |D R^T u| + t.u.
@@ -123,7 +123,7 @@ fn solve<T: Real, const N: usize>(
     what: &str,
     set: &dyn Support<T, N>,
     unit: &dyn UnitSet<T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
     (vertices, facets): (usize, usize),
     d: f64,
 ) -> Answer<T, N> {
@@ -136,7 +136,7 @@ fn solve<T: Real, const N: usize>(
 fn check<T: Real, const N: usize>(
     what: &str,
     answer: &Answer<T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
     (vertices, facets): (usize, usize),
     d: f64,
 ) {
@@ -190,7 +190,7 @@ fn choice<T: Real, const N: usize>() {
     assert_eq!(solve("cube", &cube, &cubic, &o, (N + 1, 2 * N), 1.0).plan, Plan::Rays);
     if N == 6 {
         // Round sets take thousands of facets there.
-        let answer = solve("ball", &Round::aligned([1.0; N]), &cubic, &options(1e-4, 0), large, 6f64.sqrt().recip());
+        let answer = solve("ball", &Round::aligned([1.0; N]), &cubic, &options(1e-4, None), large, 6f64.sqrt().recip());
         assert_eq!((answer.plan, answer.outcome), (Plan::Rays, Outcome::Converged));
     }
     let stretched = UnitEllipsoid::new(vector::<T, N>([0.5; N]), SMatrix::identity()).unwrap();
@@ -218,7 +218,7 @@ fn choice<T: Real, const N: usize>() {
         assert!(answer.cones >= 1 << N, "{}", answer.cones);
     }
     assert_eq!(answer.outcome, Outcome::Converged, "{:?}", Seen::from(&answer));
-    let o = options::<T, N>(1e-3, 0);
+    let o = options::<T, N>(1e-3, None);
     for size in [(3 * N - 1, 8 * N), (4 * N, 4 * N - 1), (N + 1, 2 * N)] {
         let answer = solve("ball", &round, &Ball::unit(), &o, size, d);
         assert_eq!((answer.plan, answer.outcome), (Plan::Expansion, Outcome::Capacity), "{size:?}");
@@ -291,7 +291,7 @@ fn turned_sets<T: Real, const N: usize>() {
         let relative = if relative == 0.0 { 1e-4 } else { relative };
         for facets in [4 * N, 6 * N, 24 * N, 100 * N] {
             let size = (3 * N + facets / 4, facets);
-            let o = options::<T, N>(relative, 0);
+            let o = options::<T, N>(relative, None);
             let tell = format!("turned ellipsoid {round}");
             let answer = solve(&tell, &set, &Ball::<T>::unit(), &o, size, d);
             assert_eq!(answer.outcome, Outcome::Converged, "{tell} {size:?} {:?}", Seen::from(&answer));
@@ -303,7 +303,7 @@ fn turned_sets<T: Real, const N: usize>() {
             let q = UnitEllipsoid::new(vector::<T, N>(g), matrix).unwrap();
             let tell = format!("turned ellipsoid in ellipsoid {round}");
             let d = least((0..N).map(|i| semi[i] / g[i]));
-            let o = options::<T, N>(relative.max(0.02), 0);
+            let o = options::<T, N>(relative.max(0.02), None);
             let mut memory = Memory::new::<T, N>(size.0, size.1);
             let answer = memory.solver::<T, N>().solve(&set, &q, &o);
             check(&tell, &answer, &o, size, f64::NAN);
@@ -322,7 +322,7 @@ fn unit_ball<T: Real, const N: usize>(relative: f64) {
         let size = (3 * N + facets / 3, facets);
         for tells in [true, false] {
             let set = Round { tells, ..Round::aligned([1.0; N]) };
-            let answer = solve("unit ball", &set, &Ball::unit(), &options::<T, N>(relative, 0), size, 1.0);
+            let answer = solve("unit ball", &set, &Ball::unit(), &options::<T, N>(relative, None), size, 1.0);
             assert_eq!(answer.outcome, Outcome::Converged, "{size:?} {:?}", Seen::from(&answer));
         }
     }
@@ -347,7 +347,7 @@ fn moved_balls<T: Real, const N: usize>() {
         let length = at.iter().map(|x| x * x).sum::<f64>().sqrt();
         let set = Round { at, ..Round::aligned([1.0; N]) };
         let size = (64, 16 * N);
-        let o = Options { absolute: T::of(0.02), ..options::<T, N>(0.0, 0) };
+        let o = Options { absolute: T::of(0.02), ..options::<T, N>(0.0, None) };
         let mut memory = Memory::new::<T, N>(size.0, size.1);
         let answer = memory.solver::<T, N>().solve(&set, &Ball::unit(), &o);
         let seen = Seen::from(&answer);
@@ -417,8 +417,8 @@ fn budgets<T: Real, const N: usize>() {
                     asked.get() > limit
                 };
                 let mut memory = Memory::new::<T, N>(size.0, size.1);
-                let free = options::<T, N>(relative, 0);
-                let cut = memory.solver::<T, N>().solve_until(&*set, &*unit, &free, Some(&stop));
+                let free = Options { interrupt: Some(&stop), ..options::<T, N>(relative, None) };
+                let cut = memory.solver::<T, N>().solve(&*set, &*unit, &free);
                 check(name, &cut, &free, size, d);
                 let wanted = if answer.outcome == Outcome::Iterations { Outcome::Interrupted } else { answer.outcome };
                 assert_eq!(
@@ -458,10 +458,10 @@ fn odds<T: Real, const N: usize>() {
                 _ => {}
             }
             // One that is far away is decided whatever the memory, given enough iterations.
-            if o.max_iterations > 800 && size.0 >= 3 * N && size.1 >= 4 * N && threshold < d - 0.7 * d.abs() {
+            if o.max_iterations > Some(800) && size.0 >= 3 * N && size.1 >= 4 * N && threshold < d - 0.7 * d.abs() {
                 assert_eq!(answer.outcome, Outcome::Above, "{name} {size:?} {o:?} {:?}", Seen::from(&answer));
             }
-            if o.max_iterations > 800 && threshold > d + 1.0 && d > 0.0 {
+            if o.max_iterations > Some(800) && threshold > d + 1.0 && d > 0.0 {
                 assert_eq!(answer.outcome, Outcome::Below, "{name} {size:?} {o:?} {:?}", Seen::from(&answer));
             }
         }
@@ -719,7 +719,7 @@ fn agreement<const N: usize>() {
         let points: Vec<[f64; N]> = (0..2 * N + 2 + dice.below(20)).map(|_| dice.direction::<N>()).collect();
         let set = Points::new(&points).unwrap();
         with_unit::<f64, N, _>(round % 9, &mut dice, 1.0, |q, _, name| {
-            let o = options::<f64, N>(1e-6, 0);
+            let o = options::<f64, N>(1e-6, None);
             // In the least memory there are only rays, but where the first simplex is enough.
             let by_rays = Memory::new::<f64, N>(N + 1, 2 * N).solver::<f64, N>().solve(&set, q, &o);
             let silent = UnitSetFn::new(|u: &Vector<f64, N>| q.value(u), q.error()).unwrap();
@@ -758,7 +758,7 @@ fn derivatives_of_closed_forms() {
     // 1 with respect to the least semi axis, 0 to the others.
     let semi = [1.5, 0.5, 1.0];
     let set = Round::aligned(semi);
-    let o = options::<f64, 3>(1e-8, 0);
+    let o = options::<f64, 3>(1e-8, None);
     let answer = solve("ellipsoid", &set, &Ball::unit(), &o, size, 0.5);
     for axis in 0..3 {
         // The point x of the ellipsoid moves by x_i / s_i along e_i.
@@ -772,7 +772,7 @@ fn derivatives_of_closed_forms() {
     let cube = BoxShape::new(Vector::from([1.0; 4])).unwrap();
     let at = [0.1, -0.3, 0.05, 0.2];
     let moved = Rigid::new(cube, SMatrix::identity(), Vector::from(at)).unwrap();
-    let answer = solve("moved box", &moved, &Ball::unit(), &options(1e-9, 0), size, 0.7);
+    let answer = solve("moved box", &moved, &Ball::unit(), &options(1e-9, None), size, 0.7);
     assert!(answer.rival.is_none());
     for axis in 0..4 {
         let by = answer.derivative(|_| Vector::from_fn(|i, _| f64::from(i == axis)));
@@ -780,7 +780,7 @@ fn derivatives_of_closed_forms() {
     }
     // In units of Q: rays.
     let q = UnitBox::new(Vector::from([2.0; 4])).unwrap();
-    let answer = solve("moved box", &moved, &q, &options(1e-9, 0), size, 0.35);
+    let answer = solve("moved box", &moved, &q, &options(1e-9, None), size, 0.35);
     let by = answer.derivative(|_| Vector::from([0.0, 1.0, 0.0, 0.0]));
     assert!((by - 0.5).abs() < 1e-6, "{by}");
     assert!((answer.direction.dot(&answer.support) / answer.unit - 0.35).abs() < 1e-9);
@@ -797,7 +797,7 @@ fn derivatives_by_central_differences() {
         let d = |at: [f64; 3], semi: [f64; 3], relative: f64, facets: usize| {
             let set = Round { semi, turn, at, tells: false };
             let size = (facets / 2, facets);
-            let o = options::<f64, 3>(relative, 0);
+            let o = options::<f64, 3>(relative, None);
             let answer = solve("moved ellipsoid", &set, &Ball::unit(), &o, size, f64::NAN);
             assert_eq!(answer.outcome, Outcome::Converged, "{:?}", Seen::from(&answer));
             answer
@@ -828,7 +828,8 @@ fn derivatives_by_central_differences() {
 /// The first row of the paper has several minimisers, and it is told.
 #[test]
 fn rivals_are_told_where_the_minimiser_is_not_unique() {
-    let answer = solve("a1", &TwoFingers { tells: false }, &Ball::<f64>::unit(), &options(1e-3, 0), (512, 2048), a1());
+    let answer =
+        solve("a1", &TwoFingers { tells: false }, &Ball::<f64>::unit(), &options(1e-3, None), (512, 2048), a1());
     let rival = answer.rival.expect("any rotation about the axis");
     let h = TwoFingers { tells: false }.support(&rival).unwrap().dot(&rival);
     assert!(h <= a1() * 1.003 && rival.dot(&answer.direction) < 0.99, "{h}");

@@ -68,7 +68,7 @@ fn oracle(a: &Placed, b: &Placed) -> Exact {
     signed_depth(&ExactHull::new(&a.world()), &ExactHull::new(&b.world()))
 }
 
-fn solve<T: Real>(a: &Placed, b: &Placed, options: &Options<T, 3>) -> Depth<T> {
+fn solve<T: Real>(a: &Placed, b: &Placed, options: &Options<'_, T, 3>) -> Depth<T> {
     let list = |p: &Placed| p.points.iter().map(|p| p.map(T::of)).collect::<Vec<_>>();
     let (pa, pb) = (list(a), list(b));
     let (sa, sb) = (Points::new(&pa).unwrap(), Points::new(&pb).unwrap());

@@ -144,7 +144,7 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
     let b =
         body("cylinder", &[thin, long], turn, [1.5409070910519726e-14, -4.7029554729738354e-12, 4.710667619867159e-12]);
     let (sa, sb) = (common::shape::<f32>(&a.shape, &[]), common::shape::<f32>(&b.shape, &[]));
-    for limit in [0, 5, 33] {
+    for limit in [None, Some(5), Some(33)] {
         for (vertices, facets) in [(6, 6), (64, 128)] {
             let options = Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..brisk() };
             let mut memory = Memory::new::<f32, 3>(vertices, facets);
@@ -263,7 +263,7 @@ fn a_limit_just_after_the_origin_was_found_outside() {
     let set = Rigid::new(BoxShape::new(Vector::from(h)).unwrap(), SMatrix::identity(), Vector::from(t)).unwrap();
     let mut best = f64::MIN;
     for limit in 1..20 {
-        let options = Options { max_iterations: limit, relative: 0.0, ..brisk() };
+        let options = Options { max_iterations: Some(limit), relative: 0.0, ..brisk() };
         let mut memory = Memory::new::<f64, 5>(64, 512);
         let seen = Seen::from(&memory.solver::<f64, 5>().solve(&set, &Ball::unit(), &options));
         assert!(seen.lower >= best - 1e-12, "{limit}: {best:e} before, {seen:?}");
@@ -313,7 +313,7 @@ fn an_iteration_limit_in_the_middle_of_a_cone() {
     for size in [(18, 24), (20, 30), (24, 40)] {
         let mut best = f64::MIN;
         for limit in 1..400 {
-            let options = Options { max_iterations: limit, relative: 1e-3, ..Options::default() };
+            let options = Options { max_iterations: Some(limit), relative: 1e-3, ..Options::default() };
             let mut memory = Memory::new::<f64, 6>(size.0, size.1);
             let seen = Seen::from(&memory.solver::<f64, 6>().solve(&TwoFingers, &q, &options));
             assert!(seen.lower <= d && d <= seen.upper, "{size:?} {limit}: {seen:?}");

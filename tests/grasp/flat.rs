@@ -184,8 +184,8 @@ fn two_soft_fingers_that_hardly_twist_are_not_flat() {
     assert!(answer.lower <= 1.9e-6 && 2e-6 <= answer.upper && answer.upper - answer.lower < 1e-4);
 }
 
-fn options<T: Real>() -> Options<T, 6> {
-    Options { relative: T::of(1e-2), max_iterations: 3000, ..Options::default() }
+fn options<T: Real>() -> Options<'static, T, 6> {
+    Options { relative: T::of(1e-2), max_iterations: Some(3000), ..Options::default() }
 }
 
 #[test]

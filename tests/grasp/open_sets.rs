@@ -241,14 +241,15 @@ fn the_deadline_is_asked_between_vertices_that_are_the_origin() {
         asked.set(asked.get() + 1);
         asked.get() > 100
     };
+    let options = Options { interrupt: Some(&expire), ..Options::default() };
     let q = Nothing(100_000_000);
-    let answer = memory.solver::<f64, 3>().solve_until(&cuboid, &q, &Options::default(), Some(&expire));
+    let answer = memory.solver::<f64, 3>().solve(&cuboid, &q, &options);
     assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12));
     assert!(answer.outcome == Outcome::Interrupted || answer.outcome == Outcome::Converged);
     // Many of the same vertex.
     let many = vec![[0.1, 0.05, 0.0]; 1_000_000];
     let q = Vertices::new(&many).unwrap();
     asked.set(0);
-    let answer = memory.solver::<f64, 3>().solve_until(&cuboid, &q, &Options::default(), Some(&expire));
+    let answer = memory.solver::<f64, 3>().solve(&cuboid, &q, &options);
     assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12), "{} {}", answer.lower, answer.upper);
 }

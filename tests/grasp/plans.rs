@@ -118,7 +118,7 @@ impl<T: Real> Support<T, 6> for Silent<'_, T> {
 fn check<T: Real>(
     what: &str,
     answer: &Answer<T, 6>,
-    options: &Options<T, 6>,
+    options: &Options<'_, T, 6>,
     size: (usize, usize),
     quotient: impl Fn(&Vector<f64, 6>) -> f64,
     blur: f64,
@@ -207,7 +207,7 @@ fn budgets<T: Real>() {
             let mut best = (f64::MIN, f64::MAX);
             while limit < 1200 {
                 limit += 1 + dice.below(5 + limit as usize) as u32;
-                let o = Options { max_iterations: limit, relative: T::of(1e-2), ..Options::default() };
+                let o = Options { max_iterations: Some(limit), relative: T::of(1e-2), ..Options::default() };
                 let mut memory = Memory::new::<T, 6>(size.0, size.1);
                 let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
                 let what = format!("grasp {round}");
@@ -227,8 +227,8 @@ fn budgets<T: Real>() {
                     asked.set(asked.get() + 1);
                     asked.get() > limit
                 };
-                let free = Options { max_iterations: 0, ..o };
-                let cut = memory.solver::<T, 6>().solve_until(&Silent(set), &*unit, &free, Some(&stop));
+                let free = Options { max_iterations: None, interrupt: Some(&stop), ..o };
+                let cut = memory.solver::<T, 6>().solve(&Silent(set), &*unit, &free);
                 check(&what, &cut, &free, size, quotient, blur, &mut dice);
                 assert!(cut.iterations <= limit, "{what} {limit} {}", cut.iterations);
                 if round % 4 != 3 {
@@ -304,7 +304,7 @@ fn stiff<T: Real>() {
         let grasp = Grasp::new(list, scale, if round % 3 == 0 { Norm::L1 } else { Norm::LInf });
         let (set, unit) = (grasp.set(), task.unit::<T>());
         let quotient = |u: &Vector<f64, 6>| grasp.height(u) / task.value::<T>(u);
-        let o = Options { relative: T::of(0.02), max_iterations: 1500, ..Options::default() };
+        let o = Options { relative: T::of(0.02), max_iterations: Some(1500), ..Options::default() };
         let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
         // In units of Q, that the blur of a height is.
         let u = wide(&answer.direction);
@@ -371,7 +371,7 @@ fn next_to_the_boundary<T: Real>() {
     for round in 0..12 {
         let grasp = Grasp::new(contacts::<T>(&mut dice, 3 + round % 2, 0.6, 0.3), 1.0, Norm::LInf);
         let set = grasp.set();
-        let o = Options { relative: T::of(1e-3), max_iterations: 2000, ..Options::default() };
+        let o = Options { relative: T::of(1e-3), max_iterations: Some(2000), ..Options::default() };
         let first = memory.solver::<T, 6>().solve(&set, &Ball::unit(), &o);
         let u = wide(&first.direction).normalize();
         let height = grasp.height(&u);
@@ -388,7 +388,7 @@ fn next_to_the_boundary<T: Real>() {
                 let o = Options {
                     relative: T::of(relative),
                     absolute: T::of(absolute),
-                    max_iterations: limit,
+                    max_iterations: Some(limit),
                     ..Options::default()
                 };
                 let answer = memory.solver::<T, 6>().solve(&moved, &Ball::unit(), &o);
@@ -472,7 +472,7 @@ fn references<T: Real>(loose: f64) {
                 ((200, 2048), 1 + dice.below(600), 1e-2),
                 ((128, 512), 4000, 2e-2),
             ] {
-                let o = Options { relative: T::of(relative), max_iterations: limit as u32, ..Options::default() };
+                let o = Options { relative: T::of(relative), max_iterations: Some(limit as u32), ..Options::default() };
                 let mut memory = Memory::new::<T, 6>(size.0, size.1);
                 let answer = memory.solver::<T, 6>().solve(&set, &*unit, &o);
                 let seen = Seen::from(&answer);

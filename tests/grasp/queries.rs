@@ -295,7 +295,7 @@ fn asked<T: Real>(contacts: &[Contact<T>], scale: f64, norm: Norm) -> (Closure<T
     let set = WrenchSet::new(wrenches(contacts, &frame, &mut memory).unwrap(), norm);
     let mut workspace = Box::new(Workspace::<T, 6, 128, 2048>::new());
     let closure = workspace.solver().force_closure(&set, &Options::default());
-    let options = Options { threshold: Some(T::TINY), max_iterations: 200, ..Options::default() };
+    let options = Options { threshold: Some(T::TINY), max_iterations: Some(200), ..Options::default() };
     let solved = workspace.solver().solve(&set, &Ball::unit(), &options);
     let along = match closure {
         Closure::Open { direction } => {

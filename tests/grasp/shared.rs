@@ -59,7 +59,7 @@ fn tell<T: Real>(grasp: &Value, set: &str, norm: Norm) -> Told {
     };
     let w = WrenchSet::new(primitives, norm);
     let mut workspace = Box::new(Workspace::<T, 6, 256, 4096>::new());
-    let options = Options { relative: T::of(5e-2), max_iterations: 300, ..Options::default() };
+    let options = Options { relative: T::of(5e-2), max_iterations: Some(300), ..Options::default() };
     let answer = workspace.solver().solve(&w, &Ball::unit(), &options);
     let closed = match workspace.solver().force_closure(&w, &Options::default()) {
         Closure::Closed { radius } => {

@@ -120,7 +120,7 @@ fn solve<T: Real>(solver: &mut Solver<'_, T, 3>, case: &Case, tolerances: (f64, 
     let (a, b) = (case.bodies[0].body(&*a)?, case.bodies[1].body(&*b)?);
     let (relative, absolute) = (T::of(tolerances.0), T::of(tolerances.1 * case.size));
     let options = Options { relative, absolute, ..Options::default() };
-    let depth = in_f64(&solver.depth(&a, &b, &options));
+    let depth = solver.depth(&a, &b, &options).to_f64();
     let mut times = [0.0; BATCHES];
     for time in &mut times {
         let begin = Instant::now();
@@ -164,23 +164,6 @@ fn blur<T: Real>(case: &Case) -> f64 {
     let offset: f64 = case.bodies.iter().flat_map(|b| b.translation).map(f64::abs).sum();
     let sizes = case.bodies.iter().map(|b| b.shape.numbers.iter().fold(0.0f64, |most, x| most.max(x.abs())));
     8.0 * T::ROUNDOFF.to_f64() * (offset + 3.0 * sizes.sum::<f64>())
-}
-
-fn in_f64<T: Real>(depth: &Depth<T>) -> Depth<f64> {
-    Depth {
-        outcome: depth.outcome,
-        lower: depth.lower.to_f64(),
-        upper: depth.upper.to_f64(),
-        normal: depth.normal.map(T::to_f64),
-        point_a: depth.point_a.map(T::to_f64),
-        point_b: depth.point_b.map(T::to_f64),
-        dimension: depth.dimension,
-        iterations: depth.iterations,
-        support_calls: depth.support_calls,
-        vertices: depth.vertices,
-        facets: depth.facets,
-        failure: depth.failure,
-    }
 }
 
 fn csv(out: &mut dyn Write, cases: &[Case], found: &[Found]) -> io::Result<()> {

@@ -9,21 +9,9 @@ use crate::grasp::query::Found;
 
 pub const HEADER: &str = "id,ref,set,norm,q,lower,upper,outcome,dim,iterations,peak_facets,ns";
 
-pub fn outcome_name(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Converged => "converged",
-        Outcome::Above => "above",
-        Outcome::Below => "below",
-        Outcome::Separated => "separated",
-        Outcome::Touching => "touching",
-        Outcome::Precision => "precision",
-        Outcome::Capacity => "capacity",
-        Outcome::Iterations => "iterations",
-        Outcome::Interrupted => "interrupted",
-        Outcome::Unbounded => "unbounded",
-        Outcome::Degenerate => "degenerate",
-        Outcome::SupportFailed => "support_failed",
-    }
+/// The outcome in one word.
+pub fn outcome_name(outcome: Outcome) -> String {
+    outcome.to_string().replace(' ', "_")
 }
 
 /// A text as one field.

@@ -42,8 +42,8 @@ fn is_open(answer: &Answer<f64, 6>, relative: f64) -> bool {
         && !(answer.upper - answer.lower <= relative * answer.upper)
 }
 
-fn smooth(relative: f64) -> Options<f64, 6> {
-    Options { relative, max_iterations: MAX_ITERATIONS, ..Options::default() }
+fn smooth(relative: f64) -> Options<'static, f64, 6> {
+    Options { relative, max_iterations: Some(MAX_ITERATIONS), ..Options::default() }
 }
 
 /// A set, where it is measured, and by what.
@@ -55,7 +55,7 @@ struct Query<'a> {
     /// In the span of the set, or in all of R^6.
     within: bool,
     /// What is asked first, and the tolerance that will do.
-    options: Options<f64, 6>,
+    options: Options<'static, f64, 6>,
     relative: f64,
 }
 
@@ -64,7 +64,7 @@ impl Query<'_> {
         &self,
         solver: &mut Solver<'_, f64, 6>,
         a: &dyn Support<f64, 6>,
-        options: &Options<f64, 6>,
+        options: &Options<'_, f64, 6>,
     ) -> Answer<f64, 6> {
         match self.within {
             true => solver.solve_in_span(a, &*self.unit, options),
@@ -103,19 +103,22 @@ impl Query<'_> {
             // A power of two: its products are exact.
             let s = 2f64.powi(s.max(least).log2().floor() as i32);
             let Ok(moved) = Rigid::new(&self.set, SMatrix::identity(), -end * s) else { break };
-            let rest = self.once(solver, &moved, &self.options);
+            let mut rest = self.once(solver, &moved, &self.options);
             let along = rest.direction.dot(end);
             if rest.lower > 0.0 {
-                let (lower, upper) = ((s + rest.lower).next_down(), (s + rest.upper).next_up().min(best.upper));
-                return Answer { lower, upper, support: rest.support + end * s, ..rest };
+                rest.lower = (s + rest.lower).next_down();
+                rest.upper = (s + rest.upper).next_up().min(best.upper);
+                rest.support += end * s;
+                return rest;
             }
             let upper = (value(&self.set, &rest.direction) + self.set.error()) / along;
             if rest.upper < 0.0 && along > 0.0 && upper < best.upper {
-                best =
-                    Answer { upper, direction: rest.direction, support: rest.support + end * s, unit: along, ..best };
+                (best.upper, best.unit) = (upper, along);
+                (best.direction, best.support) = (rest.direction, rest.support + end * s);
             }
             if best.upper <= 2.0 * least {
-                return Answer { outcome: Outcome::Touching, ..best };
+                best.outcome = Outcome::Touching;
+                return best;
             }
         }
         best
@@ -162,7 +165,8 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
         return Some(0.0);
     }
     let (set, unit) = (WrenchSet::new(&wrenches.parts, norm), Box::new(Segment::new(*v).ok()?));
-    let options = Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: 200, ..Options::default() };
+    let options =
+        Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: Some(200), ..Options::default() };
     let query = Query { set, unit, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
     let upper = query.answer(solver).upper.max(0.0);
     (upper < f64::MAX).then_some(upper)

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
+use qdist::Outcome;
 use qdist::grasp::{Friction, WrenchSet};
-use qdist::{Outcome, Plan};
 
 use crate::grasp::csv::outcome_name;
 use crate::grasp::input::{Grasp, Reference, Set, norm_name};
@@ -56,17 +56,6 @@ fn frame(grasp: &Grasp) -> String {
     if scale == 1.0 { about } else { format!("{about}; torque scale {scale}") }
 }
 
-fn plan_name(plan: Plan) -> &'static str {
-    match plan {
-        Plan::Distance => "distance",
-        Plan::Meridian => "meridian",
-        Plan::Rays => "rays",
-        Plan::Warm => "warm",
-        Plan::Expansion => "expansion",
-        Plan::Cones => "cones",
-    }
-}
-
 /// What the columns and words mean.
 pub const LEGEND: &str = "\
 d_Q(W) is in [lower, upper]; a negative value is minus the distance of the origin from W. dim: of the space that d is measured in.
@@ -107,7 +96,7 @@ pub fn row(out: &mut dyn Write, sets: &Sets, number: usize, query: &Reference, f
         bound(answer.lower),
         bound(answer.upper),
         outcome_name(answer.outcome),
-        plan_name(answer.plan),
+        answer.plan.to_string(),
         answer.iterations,
         found.time.as_secs_f64() * 1e3,
         query.d.map_or("-".into(), bound),

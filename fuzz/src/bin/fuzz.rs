@@ -131,7 +131,7 @@ fn exact<T: Real>(x: f64) -> f64 {
 }
 
 /// Options of any kind, `size` being the length that tolerances and thresholds are near to.
-fn random_options<T: Real, const N: usize>(dice: &mut Dice, size: f64, around: Option<f64>) -> Options<T, N> {
+fn random_options<T: Real, const N: usize>(dice: &mut Dice, size: f64, around: Option<f64>) -> Options<'static, T, N> {
     let mut o = Options::<T, N>::default();
     if dice.chance(0.5) {
         o.relative = T::of(dice.pick(&[0.0, 1e-15, 1e-9, 1e-3, 0.1, 1.0, 100.0, -1.0]));
@@ -144,7 +144,7 @@ fn random_options<T: Real, const N: usize>(dice: &mut Dice, size: f64, around: O
         o.threshold = Some(T::of(near + size * dice.pick(&[0.0, 1e-12, -1e-12, 1e-6, -1e-6, 0.1, -0.1, 3.0, -3.0])));
     }
     if dice.chance(0.3) {
-        o.max_iterations = 1 + dice.below(40) as u32;
+        o.max_iterations = Some(dice.below(40) as u32);
     }
     if dice.chance(0.4) {
         let length = dice.pick(&[0.0, 1e-30, 1e-6, 1.0, 1e6, 1e30]);
@@ -489,7 +489,7 @@ fn run_join<T: Real>(parts: &[BodyText; 3], dice: &mut Dice, ledger: &mut Ledger
     };
     let join = Join::new(moved(0), moved(1));
     let mut memory = Memory::new::<T, 3>(256, 512);
-    let options = Options { max_iterations: 300, ..Options::default() };
+    let options = Options { max_iterations: Some(300), ..Options::default() };
     let placed = Body::at(&join, Vector::zeros());
     let r = memory.solver::<T, 3>().depth(&placed, &common::body(other, &*shapes[2]), &options);
     let seen = Seen::from(&r);
@@ -809,11 +809,11 @@ fn run_general<T: Real, const N: usize>(
             (random_options::<T, N>(dice, size, None), random_capacity::<N>(dice))
         };
         // Cones go on for as long as they may.
-        if options.max_iterations == 0 {
-            options.max_iterations = match N {
+        if options.max_iterations.is_none() {
+            options.max_iterations = Some(match N {
                 2 | 3 => 3000,
                 _ => dice.pick(&[60, 60, 300, 1500]),
-            };
+            });
         }
         // Now and then it is a deadline that ends the run.
         let (asked, deadline) = (Cell::new(0), dice.below(400));
@@ -821,15 +821,16 @@ fn run_general<T: Real, const N: usize>(
             asked.set(asked.get() + 1);
             asked.get() > deadline
         };
-        let interrupt: Option<&dyn Fn() -> bool> = if run > 0 && dice.chance(0.3) { Some(&interrupt) } else { None };
+        if run > 0 && dice.chance(0.3) {
+            options.interrupt = Some(&interrupt);
+        }
         let mut memory = Memory::new::<T, N>(vertices, facets);
-        let answer =
-            set.with::<T, _>(|a| unit.with::<T, _>(|q| memory.solver::<T, N>().solve_until(a, q, &options, interrupt)));
+        let answer = set.with::<T, _>(|a| unit.with::<T, _>(|q| memory.solver::<T, N>().solve(a, q, &options)));
         let seen = Seen::from(&answer);
         let tell = format!(
             "run {run}, N = {N}, u = {:.0e}, {vertices} vertices, {facets} facets, {options:?}, deadline {:?}\n{seen:?} {:?}, {} cones, {} splits\ndirection {:?}",
             T::ROUNDOFF.to_f64(),
-            interrupt.map(|_| deadline),
+            options.interrupt.map(|_| deadline),
             answer.plan,
             answer.cones,
             answer.splits,
@@ -841,7 +842,7 @@ fn run_general<T: Real, const N: usize>(
         if seen.outcome == Outcome::SupportFailed {
             find("built-in sets failed", &tell);
         }
-        if seen.outcome == Outcome::Interrupted && interrupt.is_none() {
+        if seen.outcome == Outcome::Interrupted && options.interrupt.is_none() {
             find("interrupted by nobody", &tell);
         }
         let bounded = seen.upper < T::HUGE.to_f64();
@@ -1007,7 +1008,7 @@ fn fuzz_bad<T: Real, const N: usize>(dice: &mut Dice) {
     if seen.iterations as usize > vertices + 300 && matches!(answer.plan, Plan::Expansion | Plan::Distance) {
         find("more iterations than vertices and steps", &format!("{seen:?}"));
     }
-    if (seen.failure != 0) != (seen.outcome == Outcome::SupportFailed) {
+    if seen.failure.is_some() != (seen.outcome == Outcome::SupportFailed) {
         find("failure code and outcome disagree", &format!("{seen:?}"));
     }
 }

@@ -81,7 +81,7 @@ pub struct Share<T> {
 /// assert!(refined.answer.upper <= coarse.upper && refined.answer.upper >= coarse.lower);
 /// # Ok::<(), ContactError>(())
 /// ```
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Refined<'a, T> {
     /// The answer; `lower` is untouched, `upper` not worse. Where the minimum was found, `direction`, `support` (the point of W that
     /// touches d Q) and `unit` are those of it, and `rival` is what still is one.

@@ -35,6 +35,8 @@
 //! # Ok::<(), qdist::mesh::certificate::SolidError>(())
 //! ```
 
+use std::fmt;
+
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 mod decompose;
@@ -106,6 +108,12 @@ pub struct Certifier {
     memory: Box<search::Memory>,
     /// The translation that parts the pair of pieces which proved the last bound of DISP.
     pub(super) way_out: Option<Vector3<f64>>,
+}
+
+impl fmt::Debug for Certifier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Certifier").finish_non_exhaustive()
+    }
 }
 
 impl Default for Certifier {

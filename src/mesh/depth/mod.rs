@@ -176,6 +176,7 @@ pub struct Progress<'a> {
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) -> bool + 'a);
 
 /// Two models and the memory of their queries.
+#[derive(Debug)]
 pub struct DepthSolver<'m> {
     a: &'m Model,
     b: &'m Model,

@@ -20,6 +20,8 @@
 //! Nothing waits for anything: a tick is at most the budget's queries, and no query begins when the caller's clock says that it is late.
 //! A query that has begun is finished; the longest is a contact query, or a certificate.
 
+use std::fmt;
+
 use super::budget::Budget;
 use super::search::Search;
 use super::tick::{Memory, Tick};
@@ -48,6 +50,12 @@ use nalgebra::Isometry3;
 pub struct DepthTracker<'m> {
     solver: DepthSolver<'m>,
     memory: Memory,
+}
+
+impl fmt::Debug for DepthTracker<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DepthTracker").field("solver", &self.solver).finish_non_exhaustive()
+    }
 }
 
 impl<'m> DepthTracker<'m> {

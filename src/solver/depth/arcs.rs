@@ -8,6 +8,8 @@
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
 //! s only makes circles of the set's circles up to 4 s times their size.
 
+use core::fmt;
+
 use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
 use crate::math::{Vector, norm, unit};
 use crate::qset::Ball;
@@ -43,22 +45,14 @@ pub struct Turning<T: Real> {
     made_by: fn() -> Self,
 }
 
-type Route<T> = fn(
-    &mut Solver<'_, T, 3>,
-    &mut Pair<'_, '_, T, 3>,
-    Option<Axis<T>>,
-    u32,
-    &Options<T, 3>,
-    Option<&dyn Fn() -> bool>,
-) -> Depth<T>;
+type Route<T> =
+    fn(&mut Solver<'_, T, 3>, &mut Pair<'_, '_, T, 3>, Option<Axis<T>>, u32, &Options<'_, T, 3>) -> Depth<T>;
 
 impl<T: Real> Turning<T> {
     /// For any set with [`Symmetry::Axis`].
     pub fn new() -> Self {
         Turning {
-            depth: |solver, pair, axis, calls, options, interrupt| {
-                solver.depth_with_arcs(pair, axis, calls, options, interrupt)
-            },
+            depth: |solver, pair, axis, calls, options| solver.depth_with_arcs(pair, axis, calls, options),
             ellipsoid: false,
             made_by: Self::new,
         }
@@ -67,10 +61,10 @@ impl<T: Real> Turning<T> {
     /// For an ellipsoid without that symmetry.
     pub(crate) fn ellipsoid() -> Self {
         Turning {
-            depth: |solver, pair, axis, calls, options, interrupt| match pair.b.shape.turning() {
+            depth: |solver, pair, axis, calls, options| match pair.b.shape.turning() {
                 // (The first body's way is taken, if it has one: the second's is taken here.)
-                Some(other) if !other.ellipsoid => (other.depth)(solver, pair, axis, calls, options, interrupt),
-                _ => solver.depth_with_ellipsoid(pair, calls, options, interrupt),
+                Some(other) if !other.ellipsoid => (other.depth)(solver, pair, axis, calls, options),
+                _ => solver.depth_with_ellipsoid(pair, calls, options),
             },
             ellipsoid: true,
             made_by: Self::ellipsoid,
@@ -93,6 +87,12 @@ impl<T: Real> Turning<T> {
         // SAFETY: the caller's promise.
         let make = unsafe { core::mem::transmute::<unsafe extern "C" fn(), fn() -> Self>(raw) };
         make()
+    }
+}
+
+impl<T: Real> fmt::Debug for Turning<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Turning").field("ellipsoid", &self.ellipsoid).finish_non_exhaustive()
     }
 }
 
@@ -152,21 +152,20 @@ impl<T: Real> Solver<'_, T, 3> {
         pair: &mut Pair<'_, '_, T, 3>,
         axis: Option<Axis<T>>,
         mut calls: u32,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, 3>,
     ) -> Depth<T> {
         let options = pair.aimed(options);
         if let Some(axis) = axis
-            && let Some(answer) = self.depth_near_axis(pair, &axis, &mut calls, &options, interrupt)
+            && let Some(answer) = self.depth_near_axis(pair, &axis, &mut calls, &options)
         {
             return Depth::new(&answer, pair);
         }
         let ball = Ball::unit();
-        let answer = self.bounded(PATIENCE).expand_only(Pair::query(pair, &ball, calls, &options, interrupt));
+        let answer = self.bounded(PATIENCE).expand_only(Pair::query(pair, &ball, calls, &options));
         if answer.outcome != Outcome::Capacity {
-            return self.conclude_pair(pair, &answer, &options, interrupt);
+            return self.conclude_pair(pair, &answer, &options);
         }
-        self.depth_on_arcs(pair, &answer, options, interrupt)
+        self.depth_on_arcs(pair, &answer, options)
     }
 
     /// Both bodies turn about nearly the same axis: is the answer in its plane good enough? Not near the poles, where no arc is left, and the witnesses
@@ -177,10 +176,9 @@ impl<T: Real> Solver<'_, T, 3> {
         pair: &mut Pair<'_, '_, T, 3>,
         axis: &Axis<T>,
         calls: &mut u32,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, 3>,
     ) -> Option<Answer<T, 3>> {
-        let answer = self.depth_on_axis(pair, axis, calls, options, interrupt)?;
+        let answer = self.depth_on_axis(pair, axis, calls, options)?;
         let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
         (known && answer.direction.dot(&axis.along).abs() < T::of(0.99)).then_some(answer)
     }
@@ -192,18 +190,17 @@ impl<T: Real> Solver<'_, T, 3> {
         pair: &mut Pair<'_, '_, T, 3>,
         before: &Answer<T, 3>,
         mut options: Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
     ) -> Depth<T> {
         let mut calls = before.support_calls;
         options.guess = Some(before.direction);
-        if let Some(answer) = self.search_arcs(pair, &mut calls, &options, interrupt, before) {
+        if let Some(answer) = self.search_arcs(pair, &mut calls, &options, before) {
             return Depth::new(&answer, pair);
         }
         let ball = Ball::unit();
-        let (mut query, checked) = Pair::query(pair, &ball, calls, &options, interrupt);
+        let (mut query, checked) = Pair::query(pair, &ball, calls, &options);
         query.resume(before);
         let answer = self.expand_only((query, checked));
-        self.conclude_pair(pair, &answer, &options, interrupt)
+        self.conclude_pair(pair, &answer, &options)
     }
 
     /// The search around each axis, then around edges, after an answer that did not suffice. Adds to the support calls.
@@ -211,8 +208,7 @@ impl<T: Real> Solver<'_, T, 3> {
         &mut self,
         pair: &mut Pair<'_, '_, T, 3>,
         calls: &mut u32,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, 3>,
         known: &Answer<T, 3>,
     ) -> Option<Answer<T, 3>> {
         for (first, edge) in [(true, false), (false, false), (true, true), (false, true)] {
@@ -224,7 +220,7 @@ impl<T: Real> Solver<'_, T, 3> {
             let off = (skew(&pair.a.rotation) + skew(&pair.b.rotation)) * T::count(4);
             let uncharged = pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
             let ball = Ball::unit();
-            let (mut query, checked) = Pair::query(pair, &ball, *calls, options, interrupt);
+            let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
             query.resume(known);
             let found = checked.and_then(|()| query.normalize()).and_then(|()| self.search_sectors(&mut query, &spin));
             let iterations = query.iterations;

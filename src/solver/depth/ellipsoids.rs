@@ -41,7 +41,7 @@ impl<T: Real> Body<'_, T> {
 
 impl<T: Real> Pair<'_, '_, T, 3> {
     /// What is off, where the closed form may serve.
-    fn off_common_axes(&self, options: &Options<T, 3>) -> Option<T> {
+    fn off_common_axes(&self, options: &Options<'_, T, 3>) -> Option<T> {
         let apart = norm(&self.offset);
         let near = apart <= options.absolute.at_least(options.relative * self.extent);
         if !(near && self.a.is_ellipsoid() && self.b.is_ellipsoid()) {
@@ -65,15 +65,14 @@ impl<T: Real> Solver<'_, T, 3> {
         &mut self,
         pair: &Pair<'_, '_, T, 3>,
         calls: u32,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, 3>,
     ) -> Depth<T> {
         if let Some(off) = pair.off_common_axes(options)
             && let Some(answer) = self.ask_along_axes(pair, off, calls, options)
         {
             return Depth::new(&answer, pair);
         }
-        self.expand_pair(pair, calls, options, interrupt)
+        self.expand_pair(pair, calls, options)
     }
 
     /// The closed form, if it ends the query.
@@ -83,10 +82,10 @@ impl<T: Real> Solver<'_, T, 3> {
         pair: &Pair<'_, '_, T, 3>,
         off: T,
         calls: u32,
-        options: &Options<T, 3>,
+        options: &Options<'_, T, 3>,
     ) -> Option<Answer<T, 3>> {
         let ball = Ball::unit();
-        let (mut query, checked) = Pair::query(pair, &ball, calls, options, None);
+        let (mut query, checked) = Pair::query(pair, &ball, calls, options);
         checked.and_then(|()| query.normalize()).ok()?;
         self.polytope.reset();
         let mut lowest = None;

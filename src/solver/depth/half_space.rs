@@ -104,7 +104,13 @@ pub trait Unbounded<T: Real, const N: usize> {
     fn plane(&self) -> (&Vector<T, N>, T);
 
     /// The depth of this set, placed like `own`, and of `other`; `first`: this is A.
-    fn depth(&self, own: &Body<'_, T, N>, other: &Body<'_, T, N>, first: bool, options: &Options<T, N>) -> Depth<T, N>;
+    fn depth(
+        &self,
+        own: &Body<'_, T, N>,
+        other: &Body<'_, T, N>,
+        first: bool,
+        options: &Options<'_, T, N>,
+    ) -> Depth<T, N>;
 }
 
 impl<T: Real, const N: usize> Unbounded<T, N> for HalfSpace<T, N> {
@@ -112,7 +118,13 @@ impl<T: Real, const N: usize> Unbounded<T, N> for HalfSpace<T, N> {
         (&self.normal, self.offset)
     }
 
-    fn depth(&self, own: &Body<'_, T, N>, other: &Body<'_, T, N>, first: bool, options: &Options<T, N>) -> Depth<T, N> {
+    fn depth(
+        &self,
+        own: &Body<'_, T, N>,
+        other: &Body<'_, T, N>,
+        first: bool,
+        options: &Options<'_, T, N>,
+    ) -> Depth<T, N> {
         if !finite(&own.translation) || !finite(&other.translation) {
             return Depth::failed(Failure(NOT_FINITE));
         }
@@ -350,7 +362,7 @@ impl<T: Real, const N: usize> Found<T, N> {
     }
 
     /// The answer for A and the half space, or the other way round.
-    fn conclude(self, half_space_first: bool, options: &Options<T, N>) -> Depth<T, N> {
+    fn conclude(self, half_space_first: bool, options: &Options<'_, T, N>) -> Depth<T, N> {
         let Bracket { lower, upper } = self.bracket;
         let met =
             upper < T::HUGE && Tolerance { absolute: options.absolute, relative: options.relative }.met(&self.bracket);

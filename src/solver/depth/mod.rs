@@ -42,6 +42,7 @@ pub type Matrix2<T> = SMatrix<T, 2, 2>;
 
 /// Why a body cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BodyError {
     /// A coordinate is NaN or infinite.
     NonFinite,
@@ -71,6 +72,14 @@ pub struct Body<'a, T: Real, const N: usize = 3> {
     ball: T,
     /// Radius of the ball that goes into the support points instead: see `Support::rolling_radius`.
     inflation: T,
+}
+
+impl<T: Real, const N: usize> fmt::Debug for Body<'_, T, N> {
+    /// Where the shape is placed; of the shape itself nothing but its support function is known.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pose = (&self.rotation, &self.translation);
+        f.debug_struct("Body").field("rotation", pose.0).field("translation", pose.1).finish_non_exhaustive()
+    }
 }
 
 /// A matrix whose columns are orthonormal to so many roundoffs leaves balls what they are.
@@ -319,7 +328,7 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
 
     /// The options, with the direction to look in first.
     #[inline(always)]
-    fn aimed(&self, options: &Options<T, N>) -> Options<T, N> {
+    fn aimed<'o>(&self, options: &Options<'o, T, N>) -> Options<'o, T, N> {
         let mut options = *options;
         if options.guess.is_none() && self.offset.iter().any(|&x| x != T::zero()) {
             options.guess = Some(-self.offset);
@@ -364,12 +373,10 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         set: &'q dyn Support<T, N>,
         ball: &'q Ball<T>,
         calls: u32,
-        options: &Options<T, N>,
-        interrupt: Option<&'q dyn Fn() -> bool>,
+        options: &Options<'q, T, N>,
     ) -> (Query<'q, T, N>, Result<(), Failure>) {
         let (mut query, checked) = Query::new(set, ball, set.radius(), *options);
         query.seeks_rivals = false;
-        query.interrupt = interrupt;
         query.count_calls(calls);
         (query, checked)
     }
@@ -481,6 +488,7 @@ impl<T: Real, const N: usize> Support<T, N> for Pair<'_, '_, T, N> {
 
 /// The penetration of two bodies, or their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Depth<T, const N: usize = 3> {
     /// What was concluded.
     pub outcome: Outcome,
@@ -506,8 +514,8 @@ pub struct Depth<T, const N: usize = 3> {
     pub vertices: usize,
     /// Facets used at one time.
     pub facets: usize,
-    /// Code of a failed callback, else 0.
-    pub failure: i32,
+    /// Why a set gave no point, with outcome `SupportFailed`.
+    pub failure: Option<Failure>,
 }
 
 impl<T: Real> Solver<'_, T, 3> {
@@ -516,18 +524,7 @@ impl<T: Real> Solver<'_, T, 3> {
     /// Swapping the bodies turns the normal and swaps the witnesses. Balls (spheres, capsules, margins) are exact. Against a
     /// [half space](crate::support::HalfSpace) the answer is a closed form, and the solver is not used.
     /// `options.guess` is a direction from A to B to look in first; without one, that of the bodies' positions.
-    pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<T, 3>) -> Depth<T> {
-        self.depth_until(a, b, options, None)
-    }
-
-    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
-    pub fn depth_until(
-        &mut self,
-        a: &Body<'_, T>,
-        b: &Body<'_, T>,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
-    ) -> Depth<T> {
+    pub fn depth(&mut self, a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<'_, T, 3>) -> Depth<T> {
         if let Some(depth) = unbounded(a, b, options) {
             return depth;
         }
@@ -538,13 +535,13 @@ impl<T: Real> Solver<'_, T, 3> {
         let mut calls = pair.calls();
         let axis = pair.axis(options.relative * T::of(NEARLY_COAXIAL));
         if let Some(axis) = axis.filter(Axis::is_common)
-            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options, interrupt)
+            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options)
         {
             return Depth::new(&answer, &pair);
         }
         match a.shape.turning().or(b.shape.turning()) {
-            Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options, interrupt),
-            None => self.expand_pair(&pair, calls, options, interrupt),
+            Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options),
+            None => self.expand_pair(&pair, calls, options),
         }
     }
 
@@ -554,8 +551,7 @@ impl<T: Real> Solver<'_, T, 3> {
         pair: &mut Pair<'_, '_, T, 3>,
         axis: &Axis<T>,
         calls: &mut u32,
-        options: &Options<T, 3>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, 3>,
     ) -> Option<Answer<T, 3>> {
         // Putting the second body on the axis moves its points by at most `aside` times the extents, making both matrices rotations by 1.5
         // `stretched` times those. What is asked in one plane is moved once, and once more where it stands for another plane: twice the sum.
@@ -564,7 +560,6 @@ impl<T: Real> Solver<'_, T, 3> {
         let before = pair.charge(moved * T::of(2.1) * pair.extent);
         let ball = Ball::unit();
         let (mut query, checked) = Query::new(&*pair, &ball, pair.radius(), *options);
-        query.interrupt = interrupt;
         query.count_calls(*calls);
         let ready = checked.and_then(|()| query.normalize()).is_ok();
         let answer = if ready { self.solve_meridian(&mut query, &axis.along) } else { None };
@@ -594,23 +589,12 @@ impl<T: Real> Solver<'_, T, 2> {
     /// assert!((depth.upper - 0.125).abs() < 1e-6 && depth.lower <= depth.upper);
     /// assert!((depth.normal - Vector::from([-0.6, 0.8])).amax() < 1e-6);
     /// ```
-    pub fn depth(&mut self, a: &Body<'_, T, 2>, b: &Body<'_, T, 2>, options: &Options<T, 2>) -> Depth<T, 2> {
-        self.depth_until(a, b, options, None)
-    }
-
-    /// The same with a deadline, as in [`solve_until`](Solver::solve_until).
-    pub fn depth_until(
-        &mut self,
-        a: &Body<'_, T, 2>,
-        b: &Body<'_, T, 2>,
-        options: &Options<T, 2>,
-        interrupt: Option<&dyn Fn() -> bool>,
-    ) -> Depth<T, 2> {
+    pub fn depth(&mut self, a: &Body<'_, T, 2>, b: &Body<'_, T, 2>, options: &Options<'_, T, 2>) -> Depth<T, 2> {
         if let Some(depth) = unbounded(a, b, options) {
             return depth;
         }
         match Pair::new(a, b) {
-            Ok(pair) => self.expand_pair(&pair, pair.calls(), options, interrupt),
+            Ok(pair) => self.expand_pair(&pair, pair.calls(), options),
             Err(failure) => Depth::failed(failure),
         }
     }
@@ -621,7 +605,7 @@ impl<T: Real> Solver<'_, T, 2> {
 pub fn unbounded<T: Real, const N: usize>(
     a: &Body<'_, T, N>,
     b: &Body<'_, T, N>,
-    options: &Options<T, N>,
+    options: &Options<'_, T, N>,
 ) -> Option<Depth<T, N>> {
     if let Some(half_space) = b.shape.unbounded() {
         return Some(half_space.depth(b, a, false, options));
@@ -631,17 +615,11 @@ pub fn unbounded<T: Real, const N: usize>(
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The depth of a pair by expansion, or by distance where that decides, after so many support calls.
-    fn expand_pair(
-        &mut self,
-        pair: &Pair<'_, '_, T, N>,
-        calls: u32,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
-    ) -> Depth<T, N> {
+    fn expand_pair(&mut self, pair: &Pair<'_, '_, T, N>, calls: u32, options: &Options<'_, T, N>) -> Depth<T, N> {
         let ball = Ball::unit();
         let options = pair.aimed(options);
-        let answer = self.expand_only(Pair::query(pair, &ball, calls, &options, interrupt));
-        self.conclude_pair(pair, &answer, &options, interrupt)
+        let answer = self.expand_only(Pair::query(pair, &ball, calls, &options));
+        self.conclude_pair(pair, &answer, &options)
     }
 
     /// The answer, or that of a second look where it is open.
@@ -650,13 +628,12 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         pair: &Pair<'_, '_, T, N>,
         answer: &Answer<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
     ) -> Depth<T, N> {
         if !answer.outcome.is_open() {
             return Depth::new(answer, pair);
         }
-        let second = self.look_again_at_pair(pair, answer, options, interrupt);
+        let second = self.look_again_at_pair(pair, answer, options);
         Depth::new(second.as_ref().unwrap_or(answer), pair)
     }
 
@@ -667,8 +644,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         pair: &Pair<'_, '_, T, N>,
         answer: &Answer<T, N>,
-        options: &Options<T, N>,
-        interrupt: Option<&dyn Fn() -> bool>,
+        options: &Options<'_, T, N>,
     ) -> Option<Answer<T, N>> {
         let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
         let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
@@ -697,11 +673,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let calls = total([sharper.on_a.calls, sharper.on_b.calls]);
         let recorder = (shallow && Recorder::suits(&sharper)).then(|| Recorder::new(&sharper));
         let set: &dyn Support<T, N> = recorder.as_ref().map_or(&sharper, |recorder| recorder);
-        let (mut query, checked) = Pair::query(set, &ball, calls, options, interrupt);
+        let (mut query, checked) = Pair::query(set, &ball, calls, options);
         let mut ready = (finer || measured) && self.sharpen(&mut query, checked, &answer.direction, measured);
         if !ready && recorder.is_some() {
             let checked;
-            (query, checked) = Pair::query(set, &ball, calls, options, interrupt);
+            (query, checked) = Pair::query(set, &ball, calls, options);
             ready = checked.and_then(|()| query.normalize()).is_ok();
         }
         if !ready {
@@ -745,6 +721,25 @@ impl<T: Real, const N: usize> Depth<T, N> {
         }
     }
 
+    /// The same in `f64`, to the last bit.
+    #[must_use]
+    pub fn to_f64(&self) -> Depth<f64, N> {
+        Depth {
+            outcome: self.outcome,
+            lower: self.lower.to_f64(),
+            upper: self.upper.to_f64(),
+            normal: self.normal.map(T::to_f64),
+            point_a: self.point_a.map(T::to_f64),
+            point_b: self.point_b.map(T::to_f64),
+            dimension: self.dimension,
+            iterations: self.iterations,
+            support_calls: self.support_calls,
+            vertices: self.vertices,
+            facets: self.facets,
+            failure: self.failure,
+        }
+    }
+
     fn failed(failure: Failure) -> Self {
         Depth {
             outcome: Outcome::SupportFailed,
@@ -758,7 +753,7 @@ impl<T: Real, const N: usize> Depth<T, N> {
             support_calls: 0,
             vertices: 0,
             facets: 0,
-            failure: failure.0,
+            failure: Some(failure),
         }
     }
 }

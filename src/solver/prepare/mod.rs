@@ -20,6 +20,7 @@ mod quickhull;
 
 /// Why a hull cannot be prepared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GraphError {
     /// No points, or a coordinate is not finite.
     Shape(ShapeError),
@@ -119,15 +120,7 @@ impl<T: Real> Solver<'_, T, 3> {
     ///
     /// # Errors
     /// [`GraphError`]; the contents of `words` are unspecified then.
-    pub fn prepare_hull<'g>(&mut self, points: &[[T; 3]], words: &'g mut [u16]) -> Result<HullGraph<'g>, GraphError> {
-        self.prepare_hull_until(points, words, None)
-    }
-
-    /// The same with a deadline.
-    ///
-    /// # Errors
-    /// [`GraphError`]; the contents of `words` are unspecified then.
-    pub fn prepare_hull_until<'g>(
+    pub fn prepare_hull<'g>(
         &mut self,
         points: &[[T; 3]],
         words: &'g mut [u16],
