@@ -14,7 +14,7 @@ use crate::query::answer::Answer;
 use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::support::{Failure, Measured, Support};
+use crate::support::{Failure, Measured, Support, is_worth_measuring, measuring_calls};
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The answer, or that of a second look. `run` puts the query to a set, for an answer worth having; it is told whether that is certain because A
@@ -30,9 +30,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return answer;
         }
         let Some(options) = options.after(answer.iterations) else { return answer };
-        let asks = Measured::may_gain(a, answer.reach());
+        let asks = is_worth_measuring(a, answer.reach());
         let measured = if asks { Measured::new(a) } else { None };
-        let calls = answer.support_calls.saturating_add(if asks { Measured::<T, N>::CALLS } else { 0 });
+        let calls = answer.support_calls.saturating_add(if asks { measuring_calls::<N>() } else { 0 });
         let set = measured.as_ref().map_or(a, |measured| measured);
         match run(self, set, options, &answer.direction, measured.is_some()) {
             Some(second) => {

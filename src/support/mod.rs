@@ -35,7 +35,7 @@ pub(crate) mod shapes;
 mod solids;
 
 pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
-pub(crate) use combine::{Measured, total};
+pub(crate) use combine::{Measured, is_worth_measuring, measuring_calls, total};
 pub use failure::Failure;
 pub(crate) use graph::{GraphWriter, SEEDS};
 pub use graph::{HullGraph, Word, graph_len, large_graph_len};

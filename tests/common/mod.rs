@@ -117,7 +117,7 @@ pub fn points<T: Real>(shape: &ShapeText) -> Vec<[T; 3]> {
 }
 
 /// Builds the shape; `points` must hold its vertices when it is a hull.
-pub fn shape<'a, T: Real>(text: &ShapeText, points: &'a [[T; 3]]) -> Box<dyn Support<T, 3> + 'a> {
+pub fn shape<'a, T: Real>(text: &ShapeText, points: &'a [[T; 3]]) -> Box<dyn Support<T, 3> + Sync + 'a> {
     let n: [T; 3] = std::array::from_fn(|i| T::of(text.numbers.get(i).copied().unwrap_or(0.0)));
     match text.kind.as_str() {
         "sphere" => Box::new(Sphere::<T, 3>::new(n[0]).unwrap()),
@@ -132,7 +132,7 @@ pub fn shape<'a, T: Real>(text: &ShapeText, points: &'a [[T; 3]]) -> Box<dyn Sup
 }
 
 /// Places the shape.
-pub fn body<'a, T: Real>(text: &BodyText, shape: &'a dyn Support<T, 3>) -> Body<'a, T> {
+pub fn body<'a, T: Real>(text: &BodyText, shape: &'a (dyn Support<T, 3> + Sync)) -> Body<'a, T> {
     let r = text.rotation.map(T::of);
     let t = text.translation.map(T::of);
     Body::new(shape, Matrix3::from_row_slice(&r), Vector3::new(t[0], t[1], t[2])).unwrap()

@@ -91,7 +91,7 @@ fn general<T: Real, const N: usize>() {
         let slices = |l: &[[f64; N]]| l.iter().map(|p| p.to_vec()).collect::<Vec<_>>();
         let typed = |l: &[[f64; N]]| l.iter().map(|p| p.map(T::of)).collect::<Vec<[T; N]>>();
         let (typed_points, typed_corners) = (typed(&points), typed(&corners));
-        let (set, shape): (Set, Box<dyn Support<T, N> + '_>) = match round % 3 {
+        let (set, shape): (Set, Box<dyn Support<T, N> + Sync + '_>) = match round % 3 {
             0 => (Set::Box, Box::new(BoxShape::new(vector::<T, N>(h)).unwrap())),
             1 => (Set::Ellipsoid, Box::new(Ellipsoid::new(vector::<T, N>(h)).unwrap())),
             _ => (Set::Points(slices(&points)), Box::new(Points::new(&typed_points).unwrap())),

@@ -542,7 +542,7 @@ fn pair<T: Real>(a: &Body<'_, T>, b: &Body<'_, T>) -> Depth<T> {
     r
 }
 
-fn at<T: Real>(shape: &dyn Support<T, 3>, x: f64, y: f64, z: f64) -> Body<'_, T> {
+fn at<T: Real>(shape: &(dyn Support<T, 3> + Sync), x: f64, y: f64, z: f64) -> Body<'_, T> {
     Body::at(shape, vector([x, y, z]))
 }
 

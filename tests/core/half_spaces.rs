@@ -11,7 +11,7 @@ use qdist::support::{
     BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Margin, Points, Rigid, ShapeError, Sphere, Sum, Support,
 };
 use qdist::{Body, BodyError, Depth, NOT_FINITE, Options, Outcome, Real, UNBOUNDED, Vector};
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 fn exact<T: Real>(x: f64) -> f64 {
     T::of(x).to_f64()
@@ -55,7 +55,7 @@ impl<const N: usize> Pose<N> {
         std::array::from_fn(|i| (0..N).fold(Dd::from(0.0), |sum, j| sum + Dd::product(self.rotation[i][j], x[j])))
     }
 
-    fn body<'a, T: Real>(&self, shape: &'a dyn Support<T, N>) -> Body<'a, T, N> {
+    fn body<'a, T: Real>(&self, shape: &'a (dyn Support<T, N> + Sync)) -> Body<'a, T, N> {
         Body::new(shape, matrix(self.rotation), vector(self.translation)).unwrap()
     }
 }
@@ -95,7 +95,7 @@ macro_rules! asks {
 }
 
 /// A random body: its vertices and ball, and itself.
-fn body<T: Real, const N: usize>(dice: &mut Dice, far: f64) -> (Vec<[f64; N]>, f64, Box<dyn Support<T, N>>) {
+fn body<T: Real, const N: usize>(dice: &mut Dice, far: f64) -> (Vec<[f64; N]>, f64, Box<dyn Support<T, N> + Sync>) {
     let size = exact::<T>(dice.decade(-3.0, 2.0));
     let sizes: [f64; N] = std::array::from_fn(|_| exact::<T>(size * dice.unit()));
     match dice.below(4) {
@@ -270,7 +270,7 @@ fn two_half_spaces() {
 
 /// A box whose `support` is wrong, and which counts.
 struct Lazy {
-    calls: Cell<u32>,
+    calls: AtomicU32,
     shape: BoxShape<f64, 3>,
 }
 
@@ -279,7 +279,7 @@ impl Support<f64, 3> for Lazy {
         Ok(Vector::zeros())
     }
     fn exhaustive(&self, u: &Vector<f64, 3>) -> Result<(Vector<f64, 3>, Vector<f64, 3>), Failure> {
-        self.calls.set(self.calls.get() + 1);
+        self.calls.fetch_add(1, Relaxed);
         self.shape.support_with_witness(u)
     }
     fn has_shortcuts(&self) -> bool {
@@ -307,12 +307,12 @@ fn callbacks_are_asked_once_and_without_shortcuts_and_may_fail() {
     let ground = HalfSpace::<f64, 3>::new(Vector::from([0.0, 0.0, 1.0]), 0.0).unwrap();
     let ground = Body::at(&ground, Vector::zeros());
     let mut memory = Memory::least::<f64, 3>();
-    let mut ask = |shape: &dyn Support<f64, 3>| {
+    let mut ask = |shape: &(dyn Support<f64, 3> + Sync)| {
         memory.solver::<f64, 3>().depth(&Body::at(shape, Vector::zeros()), &ground, &Options::default())
     };
-    let lazy = Lazy { calls: Cell::new(0), shape: BoxShape::new(Vector::from([1.0, 1.0, 1.0])).unwrap() };
+    let lazy = Lazy { calls: AtomicU32::new(0), shape: BoxShape::new(Vector::from([1.0, 1.0, 1.0])).unwrap() };
     let r = ask(&lazy);
-    assert!(r.lower <= 1.0 && 1.0 <= r.upper && lazy.calls.get() == 1, "{r:?}");
+    assert!(r.lower <= 1.0 && 1.0 <= r.upper && lazy.calls.load(Relaxed) == 1, "{r:?}");
     let r = ask(&Says(Err(Failure(7))));
     assert_eq!((r.outcome, r.failure, r.upper), (Outcome::SupportFailed, Some(Failure(7)), f64::MAX));
     for bad in [f64::NAN, f64::INFINITY] {
@@ -326,7 +326,7 @@ fn where_it_cannot_serve_it_says_so() {
     let ground = HalfSpace::<f64, 3>::new(Vector::from([0.0, 0.0, 1.0]), 0.0).unwrap();
     let ball = Sphere::<f64, 3>::new(1.0).unwrap();
     let lifted = Rigid::new(ground, SMatrix::identity(), Vector::from([0.0, 0.0, 1.0])).unwrap();
-    let sets: [&dyn Support<f64, 3>; 4] =
+    let sets: [&(dyn Support<f64, 3> + Sync); 4] =
         [&Sum::new(ground, ball), &Join::new(ball, ground), &lifted, &Margin::new(ground, 1.0).unwrap()];
     for set in sets {
         let mut memory = Memory::new::<f64, 3>(32, 64);

@@ -92,7 +92,7 @@ impl Placed {
             Kind::Hull(p) => p.iter().map(|p| p.map(T::of)).collect(),
             _ => Vec::new(),
         };
-        let shape: Box<dyn Support<T, 3> + '_> = match &self.kind {
+        let shape: Box<dyn Support<T, 3> + Sync + '_> = match &self.kind {
             Kind::Sphere(r) => Box::new(Sphere::<T, 3>::new(t(*r)).unwrap()),
             Kind::Box(h) => Box::new(BoxShape::new(v(h)).unwrap()),
             Kind::Ellipsoid(h) => Box::new(Ellipsoid::new(v(h)).unwrap()),

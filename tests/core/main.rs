@@ -23,5 +23,6 @@ mod plans;
 mod polytopes;
 mod regressions;
 mod shallow;
+mod sharing;
 mod shortcuts;
 mod warm_and_flat;

@@ -36,7 +36,7 @@ fn permutation<T: Real>(turns: usize) -> Matrix3<T> {
 }
 
 /// Bodies with their half height along z: the last is upside down.
-fn body_on_the_floor<T: Real>(kind: usize, size: T) -> (Box<dyn Support<T, 3>>, T) {
+fn body_on_the_floor<T: Real>(kind: usize, size: T) -> (Box<dyn Support<T, 3> + Sync>, T) {
     match kind % 5 {
         0 => (Box::new(BoxShape::new(Vector::from([size, size, size])).unwrap()), size),
         1 => (Box::new(Sphere::new(size).unwrap()), size),
@@ -61,7 +61,7 @@ fn on_the_floor<T: Real>(
     let (l, h) = (T::of(l), T::of(h));
     let (body, half) = body_on_the_floor(kind, T::of(size));
     let corners: Vec<[T; 3]> = (0..8).map(|i| [[-l, l][i & 1], [-l, l][i >> 1 & 1], [-h, h][i >> 2]]).collect();
-    let ground: Box<dyn Support<T, 3> + '_> = match floor % 3 {
+    let ground: Box<dyn Support<T, 3> + Sync + '_> = match floor % 3 {
         0 => Box::new(BoxShape::new(Vector::from([l, l, h])).unwrap()),
         1 => Box::new(Cylinder::new(l, h).unwrap()),
         _ => Box::new(Points::new(&corners).unwrap()),

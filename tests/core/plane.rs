@@ -66,7 +66,7 @@ impl Placed {
     fn with<T: Real, R>(&self, ask: impl FnOnce(&Body<'_, T, 2>) -> R) -> R {
         let vector = |p: Point| Vector::<T, 2>::new(T::of(p[0]), T::of(p[1]));
         let points: Vec<[T; 2]>;
-        let shape: Box<dyn Support<T, 2> + '_> = match &self.kind {
+        let shape: Box<dyn Support<T, 2> + Sync + '_> = match &self.kind {
             Kind::Disc(r) => Box::new(Sphere::new(T::of(*r)).unwrap()),
             Kind::Box(half) => Box::new(BoxShape::new(vector(*half)).unwrap()),
             Kind::Capsule(r, h) => Box::new(Capsule::new(T::of(*r), T::of(*h)).unwrap()),

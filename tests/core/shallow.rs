@@ -38,7 +38,7 @@ impl Numbers {
     }
 
     /// Calls with the shape in either precision.
-    fn both<R>(&self, scale: f32, act: impl FnOnce(&dyn Support<f32, 3>, &dyn Support<f64, 3>) -> R) -> R {
+    fn both<R>(&self, scale: f32, act: impl FnOnce(&(dyn Support<f32, 3> + Sync), &(dyn Support<f64, 3> + Sync)) -> R) -> R {
         match self {
             Numbers::Box(half) => {
                 let half = half * scale;
@@ -83,7 +83,7 @@ fn pose(rng: &mut Dice) -> Pose {
     (rotation.matrix().map(|x| x as f32), Vector3::zeros())
 }
 
-fn exact(a: &dyn Support<f64, 3>, at: &Pose, b: &dyn Support<f64, 3>, bt: &Pose) -> (f64, f64) {
+fn exact(a: &(dyn Support<f64, 3> + Sync), at: &Pose, b: &(dyn Support<f64, 3> + Sync), bt: &Pose) -> (f64, f64) {
     let place = |set, pose: &Pose| Body::new(set, pose.0.map(f64::from), pose.1.map(f64::from)).map_err(drop);
     let (a, b) = (place(a, at).unwrap(), place(b, bt).unwrap());
     let mut memory = Box::new(Workspace::<f64, 3, 2048, 4096>::new());

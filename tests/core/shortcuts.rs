@@ -4,6 +4,7 @@
 use crate::common;
 
 use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use common::dd::{Dd, V3, v3};
 use common::dice::Dice;
@@ -37,17 +38,17 @@ struct Sabotaged<T: Real> {
     sabotage: Sabotage,
     /// Does it know its extent?
     known: bool,
-    calls: Cell<u32>,
+    calls: AtomicU32,
 }
 
 impl<T: Real> Sabotaged<T> {
     fn new(points: &[[f64; 3]], sabotage: Sabotage, known: bool) -> Self {
         let points = points.iter().map(|p| Vector::from(p.map(T::of))).collect();
-        Self { points, sabotage, known, calls: Cell::new(0) }
+        Self { points, sabotage, known, calls: AtomicU32::new(0) }
     }
 
     fn farthest(&self, u: &Vector<T, 3>) -> Vector<T, 3> {
-        self.calls.set(self.calls.get() + 1);
+        self.calls.fetch_add(1, Relaxed);
         self.points.iter().fold(self.points[0], |best, p| if p.dot(u) > best.dot(u) { *p } else { best })
     }
 }
@@ -133,10 +134,10 @@ fn right<T: Real>(a: &Sabotaged<T>, b: &Sabotaged<T>, turns: [Matrix3<T>; 2], at
     let mut memory = Memory::new::<T, 3>(128, 256);
 
     let bodies = [Body::new(a, turns[0], at[0]).unwrap(), Body::new(b, turns[1], at[1]).unwrap()];
-    a.calls.set(0);
-    b.calls.set(0);
+    a.calls.store(0, Relaxed);
+    b.calls.store(0, Relaxed);
     let r = memory.solver::<T, 3>().depth(&bodies[0], &bodies[1], &options);
-    assert_eq!(r.support_calls, a.calls.get().max(b.calls.get()), "{what}: calls");
+    assert_eq!(r.support_calls, a.calls.load(Relaxed).max(b.calls.load(Relaxed)), "{what}: calls");
     let (lower, upper) = (r.lower.to_f64(), r.upper.to_f64());
     assert!(lower <= truth && truth <= upper, "{what}: {truth} is not in [{lower}, {upper}]");
     assert!(upper - lower <= 1e-5 + 10.0 * near, "{what}: {truth}, {r:?}");
@@ -150,10 +151,10 @@ fn right<T: Real>(a: &Sabotaged<T>, b: &Sabotaged<T>, turns: [Matrix3<T>; 2], at
     // The same as a set made of sets.
     let (moved_a, moved_b) = (Rigid::new(a, turns[0], at[0]).unwrap(), Rigid::new(b, turns[1], at[1]).unwrap());
     let difference = Difference::new(moved_a, Scaled::new(moved_b, T::one()).unwrap());
-    a.calls.set(0);
-    b.calls.set(0);
+    a.calls.store(0, Relaxed);
+    b.calls.store(0, Relaxed);
     let r = memory.solver::<T, 3>().solve(&difference, &Ball::unit(), &options);
-    assert_eq!((r.support_calls, a.calls.get()), (a.calls.get(), b.calls.get()), "{what}: calls");
+    assert_eq!((r.support_calls, a.calls.load(Relaxed)), (a.calls.load(Relaxed), b.calls.load(Relaxed)), "{what}: calls");
     assert!(r.lower.to_f64() <= truth && truth <= r.upper.to_f64(), "{what}: solve");
     for corner in r.witness.corners() {
         let on_a = corner.vertex.witness;
@@ -315,7 +316,7 @@ fn what_cannot_be_is_refused() {
                 continue;
             }
             let turned = Rigid::new(liar, Matrix3::identity(), Vector::from([0.1, 0.0, 0.0])).unwrap();
-            let sets: [&dyn Support<f64, 3>; 6] = [
+            let sets: [&(dyn Support<f64, 3> + Sync); 6] = [
                 &liar,
                 &Margin::new(liar, 1.0).unwrap(),
                 &Sum::new(liar, &known),

@@ -125,7 +125,7 @@ impl Shape {
     }
 
     /// As the library has it; `points` are its vertices when it is a hull.
-    pub fn build<'a, T: Real>(&self, points: &'a [[T; 3]]) -> Result<Box<dyn Support<T, 3> + 'a>, Trouble> {
+    pub fn build<'a, T: Real>(&self, points: &'a [[T; 3]]) -> Result<Box<dyn Support<T, 3> + Sync + 'a>, Trouble> {
         let n =
             |i: usize| self.numbers.get(i).map(|&x| T::of(x)).ok_or(format!("{} lacks number {}", self.kind, i + 1));
         let bad = |error| format!("{}: {error}", self.kind);
@@ -146,7 +146,7 @@ impl Shape {
 
 impl Placed {
     /// The shape where it is.
-    pub fn body<'a, T: Real>(&self, shape: &'a dyn Support<T, 3>) -> Result<Body<'a, T>, Trouble> {
+    pub fn body<'a, T: Real>(&self, shape: &'a (dyn Support<T, 3> + Sync)) -> Result<Body<'a, T>, Trouble> {
         let t = self.translation.map(T::of);
         let rotation = Matrix3::from_row_slice(&self.rotation.map(T::of));
         Body::new(shape, rotation, Vector3::new(t[0], t[1], t[2]))

@@ -145,7 +145,7 @@ fn prepared<'a, T: Real>(
     shape: &Shape,
     points: &'a [[T; 3]],
     words: &'a mut [u16],
-) -> Result<Box<dyn Support<T, 3> + 'a>, Trouble> {
+) -> Result<Box<dyn Support<T, 3> + Sync + 'a>, Trouble> {
     if points.len() > PLAIN && shape.kind == "hull" {
         let mut facets = vec![HullFacet::EMPTY; hull_facets(points.len())];
         // (A hull that cannot be prepared, a flat one say, is asked as it is.)

@@ -21,7 +21,7 @@ use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::failure::{NOT_FINITE, TOO_LARGE};
-use crate::support::{Failure, Measured, Support, Symmetry, one_by_one};
+use crate::support::{Failure, Measured, Support, Symmetry, is_worth_measuring, measuring_calls, one_by_one};
 use nalgebra::SMatrix;
 
 mod arcs;
@@ -65,7 +65,7 @@ impl core::error::Error for BodyError {}
 /// the angle of cosine c and sine s is the matrix (c, -s; s, c).
 #[derive(Clone, Copy)]
 pub struct Body<'a, T: Real, const N: usize = 3> {
-    shape: &'a dyn Support<T, N>,
+    shape: &'a (dyn Support<T, N> + Sync),
     rotation: SMatrix<T, N, N>,
     translation: Vector<T, N>,
     /// Radius of the ball swept over the placed core.
@@ -86,13 +86,13 @@ impl<T: Real, const N: usize> fmt::Debug for Body<'_, T, N> {
 const SKEW_ROUNDOFFS: usize = 32;
 
 impl<'a, T: Real, const N: usize> Body<'a, T, N> {
-    /// Places a shape. The matrix is used as it is given: the body is the image of the shape, except that balls (spheres,
+    /// Places a shape, which may serve several threads at a time. The matrix is used as it is given: the body is the image of the shape, except that balls (spheres,
     /// the rounding of capsules, margins) stay balls.
     ///
     /// # Errors
     /// [`BodyError`], naming what is wrong.
     pub fn new(
-        shape: &'a dyn Support<T, N>,
+        shape: &'a (dyn Support<T, N> + Sync),
         rotation: SMatrix<T, N, N>,
         translation: Vector<T, N>,
     ) -> Result<Self, BodyError> {
@@ -114,12 +114,12 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     }
 
     /// Places a shape without turning it.
-    pub fn at(shape: &'a dyn Support<T, N>, translation: Vector<T, N>) -> Self {
+    pub fn at(shape: &'a (dyn Support<T, N> + Sync), translation: Vector<T, N>) -> Self {
         Body { shape, rotation: SMatrix::identity(), translation, ball: shape.radius(), inflation: T::zero() }
     }
 
     /// The same body, with its shape as it was measured.
-    fn remade<'m>(&'m self, measured: Option<&'m Measured<'m, T, N>>) -> Body<'m, T, N> {
+    fn remade<'m>(&'m self, measured: Option<&'m Measured<'m, dyn Support<T, N> + Sync + 'm, T, N>>) -> Body<'m, T, N> {
         let shape = measured.map_or(self.shape, |measured| measured);
         Body { shape, ..*self }
     }
@@ -646,7 +646,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         answer: &Answer<T, N>,
         options: &Options<'_, T, N>,
     ) -> Option<Answer<T, N>> {
-        let asks = [pair.a, pair.b].map(|body| Measured::may_gain(body.shape, T::zero()));
+        let asks = [pair.a, pair.b].map(|body| is_worth_measuring(body.shape, T::zero()));
         let finer = answer.outcome == Outcome::Degenerate || pair.is_finer_along(&answer.direction);
         // (A normal in one word proves an upper bound to half a roundoff of the bodies' size: where that is too much, two do not help. Nor do they where what
         // two words leave open is.)
@@ -660,7 +660,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let [a, b] = [(pair.a, asks[0]), (pair.b, asks[1])]
             .map(|(body, asks)| if asks { Measured::new(body.shape) } else { None });
         let measured = a.is_some() || b.is_some();
-        let asked = asks.map(|asks| if asks { Measured::<T, N>::CALLS } else { 0 });
+        let asked = asks.map(|asks| if asks { measuring_calls::<N>() } else { 0 });
         // Those of the body that was asked more often: the query's, which are both bodies', and those that measured it.
         let both = answer.support_calls.saturating_sub(pair.calls());
         let measuring = [pair.on_a.calls + asked[0], pair.on_b.calls + asked[1]];

@@ -10,24 +10,26 @@ use crate::scalar::Real;
 use crate::support::{Failure, Support, Symmetry};
 
 /// A set, and the box around its core.
-pub(crate) struct Measured<'a, T, const N: usize> {
-    set: &'a dyn Support<T, N>,
+pub(crate) struct Measured<'a, S: ?Sized, T, const N: usize> {
+    set: &'a S,
     extents: Vector<T, N>,
 }
 
-impl<'a, T: Real, const N: usize> Measured<'a, T, N> {
-    /// The support calls that it takes to measure a set.
-    pub const CALLS: u32 = 2 * N as u32;
+/// The support calls that it takes to measure a set in N dimensions.
+pub(crate) const fn measuring_calls<const N: usize>() -> u32 {
+    2 * N as u32
+}
 
-    /// May a set be worth measuring whose points were seen no farther out than `reach`? Not where its error does not hang on the extent.
-    pub fn may_gain(set: &dyn Support<T, N>, reach: T) -> bool {
-        let stated = set.extent();
-        let by_default = set.error() == T::count(16 * N) * T::ROUNDOFF * stated && set.center().is_none();
-        by_default && stated > reach + reach
-    }
+/// May a set be worth measuring whose points were seen no farther out than `reach`? Not where its error does not hang on the extent.
+pub(crate) fn is_worth_measuring<T: Real, const N: usize>(set: &dyn Support<T, N>, reach: T) -> bool {
+    let stated = set.extent();
+    let by_default = set.error() == T::count(16 * N) * T::ROUNDOFF * stated && set.center().is_none();
+    by_default && stated > reach + reach
+}
 
+impl<'a, S: Support<T, N> + ?Sized, T: Real, const N: usize> Measured<'a, S, T, N> {
     /// Measures a set; `None` where the extent that it states is not loose.
-    pub fn new(set: &'a dyn Support<T, N>) -> Option<Self> {
+    pub fn new(set: &'a S) -> Option<Self> {
         let stated = set.extent();
         let mut extents = Vector::<T, N>::zeros();
         for i in 0..N {
@@ -44,7 +46,7 @@ impl<'a, T: Real, const N: usize> Measured<'a, T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Support<T, N> for Measured<'_, T, N> {
+impl<S: Support<T, N> + ?Sized, T: Real, const N: usize> Support<T, N> for Measured<'_, S, T, N> {
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
         self.set.support(u)
     }

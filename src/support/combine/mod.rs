@@ -28,7 +28,7 @@ mod sums;
 
 pub use join::Join;
 pub use linear::Linear;
-pub(crate) use measured::Measured;
+pub(crate) use measured::{Measured, is_worth_measuring, measuring_calls};
 pub use rigid::Rigid;
 pub use scaled::{Margin, Scaled};
 pub use sums::{Difference, Sum};
