@@ -121,7 +121,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     #[inline(never)]
     fn descend_from_lowest(&mut self, query: &mut Query<'_, T, N>) -> Result<Option<Stop>, Failure> {
         let mut starts = Vec::<Vector<T, N>, STARTS>::new();
-        let _ = starts.push(query.direction);
+        let _ = starts.push(query.best.direction);
         for _ in 0..16 * STARTS {
             let lowest = self.pop_lowest().and_then(|(_, index)| self.facet(index));
             let Some(Facet { normal, .. }) = lowest else { break };
@@ -177,7 +177,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Searches all cones, those that hold the best direction first; `mirrors` tells which orthants are images of others.
     fn pass(&mut self, query: &mut Query<'_, T, N>, gap: T, mirrors: u64) -> Result<Result<Pass<T, N>, Stop>, Failure> {
         let mut pass = Pass { lower: T::HUGE, witness: None, cones: 0, splits: 0 };
-        let first = Cone::<N>::orthant_of(&query.direction);
+        let first = Cone::<N>::orthant_of(&query.best.direction);
         for orthant in (0..Cone::<N>::ORTHANTS).filter(|&o| (0..o).all(|other| mirrors >> (o ^ other) & 1 == 0)) {
             let mut cone = Cone::<N>::new(orthant ^ first);
             loop {
@@ -334,7 +334,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
 /// pierces. (A cone's lowest facet may belong to another direction, and some of its points are at infinity.)
 fn touch<T: Real, const N: usize>(query: &mut Query<'_, T, N>, found: &mut Cones<T, N>) -> Result<(), Failure> {
     if matches!(found.stop, Stop::Met | Stop::Rounding)
-        && let Some(target) = query.mapping(&query.direction)
+        && let Some(target) = query.mapping(&query.best.direction)
     {
         let (ray, shot) = shoot(query, &target, None, T::of(1e-9).at_least(query.options.relative), |_| T::HUGE)?;
         if matches!(shot, Shot::Hit) && ray.reach().is_some() {

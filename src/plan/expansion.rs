@@ -76,7 +76,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
                 if !self.confirm(query)? {
                     continue;
                 }
-                if blind && query.direction != normal {
+                if blind && query.best.direction != normal {
                     self.reconsider(query);
                     continue;
                 }
@@ -229,7 +229,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
     /// the plane, or belong to another of several minima.
     pub(crate) fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
-        self.simplex_around(query.foot(), &query.direction, query.options.relative, facet)
+        self.simplex_around(query.foot(), &query.best.direction, query.options.relative, facet)
     }
 
     /// The same, around a point in a plane with this normal, known to a share `relative` along it, and to the root of that sideways.

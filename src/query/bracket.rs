@@ -11,18 +11,18 @@ use crate::scalar::Real;
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// The upper bound: proved by `direction`.
     pub fn upper(&self) -> T {
-        if self.height >= T::HUGE {
+        if self.best.height >= T::HUGE {
             return T::HUGE; // nothing has been asked yet
         }
-        let margin = self.margin_along(&self.direction);
+        let margin = self.margin_along(&self.best.direction);
         match self.ball {
-            Some(_) => self.bounds.upper_ball(self.height, margin, self.per_ball),
-            None if self.apart => {
-                let upper = self.bounds.upper(self.height, margin, T::one(), T::zero());
+            Some(_) => self.bounds.upper_ball(self.best.height, margin, self.per_ball),
+            None if self.best.apart => {
+                let upper = self.bounds.upper(self.best.height, margin, T::one(), T::zero());
                 // (Points that were seen since may have shown that A knows its points too badly to be called apart.)
                 if upper >= T::zero() && self.bounds.unknown_extent { T::HUGE } else { upper }
             }
-            None => self.bounds.upper(self.height, margin, self.unit, self.unit_error),
+            None => self.bounds.upper(self.best.height, margin, self.best.unit, self.unit_error),
         }
     }
 
@@ -37,7 +37,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     #[cold]
     fn lower_by_axes(&self, axes: &Axes<T, N>, simplex: &Simplex<T, N>, distance: T) -> T {
         // Nearer than that, the point has no direction.
-        let line = if distance > self.margin() { simplex.towards_origin(distance, self.reach) } else { self.direction };
+        let line =
+            if distance > self.margin() { simplex.towards_origin(distance, self.reach) } else { self.best.direction };
         let crossing = self.highest_crossing(simplex, &line);
         let crossing =
             crossing.map_or(-T::HUGE, |height| self.bounds.lower_ball(-height, axes.margin(&line), self.per_ball));
@@ -121,16 +122,16 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// A lower end that would end the query now, `reserve` included; at least a share `gap` below the upper end.
     pub fn level(&self, gap: T, reserve: T) -> T {
-        let met = self.tolerance(Self::sharpness() * T::of(0.99)).below(self.ratio) + reserve;
+        let met = self.tolerance(Self::sharpness() * T::of(0.99)).below(self.best.ratio) + reserve;
         let enough = self.options.threshold.map_or(met, |threshold| met.at_most(threshold + reserve));
-        enough.at_most(self.ratio - self.ratio * gap)
+        enough.at_most(self.best.ratio - self.best.ratio * gap)
     }
 
     /// So many margins, as a difference of d. (A Q of no known inner radius: as wide as it is along the best direction.)
     pub fn reserve(&self, margins: usize) -> T {
         let inner = self.inner_radius();
         let margin = T::count(margins) * self.margin();
-        margin / if inner > T::zero() { inner } else { self.unit.at_least(T::TINY) }
+        margin / if inner > T::zero() { inner } else { self.best.unit.at_least(T::TINY) }
     }
 
     /// Is d certainly below the threshold?
@@ -140,15 +141,16 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// The better of a lower bound and the one that was known before, unless an upper bound has disproved that.
     pub fn floored(&self, lower: T) -> T {
-        let holds = self.floor > T::zero() && self.floor <= self.ratio && self.still_holds(self.floor_reach);
-        if holds { lower.at_least(self.floor) } else { lower }
+        let holds =
+            self.floor.lower > T::zero() && self.floor.lower <= self.best.ratio && self.still_holds(self.floor.reach);
+        if holds { lower.at_least(self.floor.lower) } else { lower }
     }
 
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
     /// without margins.
     #[inline]
     pub fn is_open(&self, key: T) -> bool {
-        let gap = Bracket { lower: self.floored(key), upper: self.ratio };
+        let gap = Bracket { lower: self.floored(key), upper: self.best.ratio };
         self.options.threshold.is_none() && !self.tolerance(Self::sharpness()).met(&gap)
     }
 
@@ -178,7 +180,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// The width that the tolerance allows a bracket at the best upper bound.
     pub fn slack(&self) -> T {
-        self.tolerance(T::one()).above(self.ratio) - self.ratio
+        self.tolerance(T::one()).above(self.best.ratio) - self.best.ratio
     }
 
     /// Is this bracket as narrow as asked for?
@@ -188,20 +190,21 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
 
     /// Has a height of A come so near to 0 that rounding is all that is left to say of it?
     pub fn is_at_zero(&self) -> bool {
-        self.height + self.bounds.radius <= self.margin_along(&self.direction) * T::count(64)
+        self.best.height + self.bounds.radius <= self.margin_along(&self.best.direction) * T::count(64)
     }
 
     /// Is the lower end at 0 all that is left to find out? So it is as soon as a height of A is within its rounding of 0: no surface proves
     /// more than d >= 0 then. (Not along a direction in which Q has next to no extent, which says nothing of d; and a threshold so small may still be
     /// decided by a lower height.)
     pub fn is_spent(&self) -> bool {
-        let nothing = self.height + self.bounds.radius <= self.margin_along(&self.direction) && !self.apart;
+        let nothing =
+            self.best.height + self.bounds.radius <= self.margin_along(&self.best.direction) && !self.best.apart;
         self.spent || nothing && self.options.threshold.is_none() && self.is_wide()
     }
 
     /// Is Q about as wide along the best direction as elsewhere?
     fn is_wide(&self) -> bool {
-        self.inner_radius() > T::zero() || self.unit * T::count(16) >= self.widest
+        self.inner_radius() > T::zero() || self.best.unit * T::count(16) >= self.best.widest
     }
 
     /// Says so, for other reasons.

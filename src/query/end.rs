@@ -17,14 +17,14 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             return Ok(true);
         }
         self.exhaustive = true;
-        let direction = self.direction;
+        let direction = self.best.direction;
         let (point, height) = self.ask_without_shortcuts(&direction)?;
-        if height <= self.height {
+        if height <= self.best.height {
             return Ok(true);
         }
         // The shortcut was wrong: what it said is forgotten.
-        (self.height, self.ratio, self.apart) = (T::HUGE, T::HUGE, false);
-        self.rival = None;
+        (self.best.height, self.best.ratio, self.best.apart) = (T::HUGE, T::HUGE, false);
+        self.rivals.met = None;
         self.note(&direction, height, &point, T::zero())?;
         Ok(false)
     }
@@ -48,14 +48,14 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         {
             let (_, height) = self.ask_without_shortcuts(&direction)?;
             let ratio = self.quotient(&direction, height)?;
-            self.rival = self.rival.filter(|_| self.ties(ratio));
+            self.rivals.met = self.rivals.met.filter(|_| self.ties(ratio));
         }
         Ok(())
     }
 
     /// h_A / h_Q of a direction whose height is known; the largest number where Q has no extent that way.
     fn quotient(&self, direction: &Vector<T, N>, height: T) -> Result<T, Failure> {
-        if self.apart {
+        if self.best.apart {
             return Ok(height);
         }
         let unit = self.unit(direction)?;
@@ -68,7 +68,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         let stop = match self.verify() {
             Ok(_) => stop,
             Err(Failure(code)) => {
-                (self.height, self.unit) = (T::HUGE, T::one());
+                (self.best.height, self.best.unit) = (T::HUGE, T::one());
                 Stop::Failed(code)
             }
         };
@@ -129,15 +129,15 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             outcome,
             lower: self.unscaled(lower, -T::one()),
             upper: self.unscaled(upper, T::one()),
-            direction: self.direction,
-            support: (self.point + self.direction * self.bounds.radius) / self.scale,
-            unit: self.unit,
+            direction: self.best.direction,
+            support: (self.best.point + self.best.direction * self.bounds.radius) / self.scale,
+            unit: self.best.unit,
             rival: self.rival().filter(|_| !matches!(stop, Stop::Failed(_))),
             witness,
             plan: self.plan,
             dimension: self.dimension,
-            iterations: self.iterations,
-            support_calls: self.support_calls,
+            iterations: self.limits.iterations,
+            support_calls: self.limits.support_calls,
             vertices: 0,
             facets: 0,
             cones: 0,
@@ -159,8 +159,8 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             lower: self.unscaled(bracket.lower, -T::one()),
             upper: self.unscaled(bracket.upper, T::one()),
             direction: direction.unwrap_or(answer.direction),
-            iterations: self.iterations,
-            support_calls: self.support_calls,
+            iterations: self.limits.iterations,
+            support_calls: self.limits.support_calls,
             ..answer
         }
     }

@@ -277,7 +277,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         let is_known = !apart && matches!(stop, Stop::Zero | Stop::Flat) && query.contains_origin();
         let is_cut_short = matches!(stop, Stop::Capacity | Stop::Iterations | Stop::Interrupted);
         if query.bounds.radius == T::zero() && !is_known && !is_cut_short {
-            let first = if apart { query.direction } else { query.first_direction() };
+            let first = if apart { query.best.direction } else { query.first_direction() };
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
                 Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {

@@ -133,7 +133,7 @@ fn at_once<T: Real, const N: usize>(
     let mut stop = verdict(query);
     if stop.is_none() && query.upper() > T::zero() {
         // The minimiser has moved too.
-        let direction = query.direction;
+        let direction = query.best.direction;
         stop = descend(query, &direction)?.filter(|&stop| stop != Stop::Outside).or_else(|| verdict(query));
     }
     Ok(stop.map(|stop| {

@@ -38,7 +38,11 @@ impl Numbers {
     }
 
     /// Calls with the shape in either precision.
-    fn both<R>(&self, scale: f32, act: impl FnOnce(&(dyn Support<f32, 3> + Sync), &(dyn Support<f64, 3> + Sync)) -> R) -> R {
+    fn both<R>(
+        &self,
+        scale: f32,
+        act: impl FnOnce(&(dyn Support<f32, 3> + Sync), &(dyn Support<f64, 3> + Sync)) -> R,
+    ) -> R {
         match self {
             Numbers::Box(half) => {
                 let half = half * scale;

@@ -154,7 +154,11 @@ fn right<T: Real>(a: &Sabotaged<T>, b: &Sabotaged<T>, turns: [Matrix3<T>; 2], at
     a.calls.store(0, Relaxed);
     b.calls.store(0, Relaxed);
     let r = memory.solver::<T, 3>().solve(&difference, &Ball::unit(), &options);
-    assert_eq!((r.support_calls, a.calls.load(Relaxed)), (a.calls.load(Relaxed), b.calls.load(Relaxed)), "{what}: calls");
+    assert_eq!(
+        (r.support_calls, a.calls.load(Relaxed)),
+        (a.calls.load(Relaxed), b.calls.load(Relaxed)),
+        "{what}: calls"
+    );
     assert!(r.lower.to_f64() <= truth && truth <= r.upper.to_f64(), "{what}: solve");
     for corner in r.witness.corners() {
         let on_a = corner.vertex.witness;

@@ -46,7 +46,7 @@ impl<T: Real> Problem<'_, '_, T> {
         checked.and_then(|()| query.normalize()).ok()?;
         query.support(near).ok()?;
         descend(&mut query, near).ok()?;
-        Some(query.direction)
+        Some(query.best.direction)
     }
 
     /// The minimum that Newton's method finds from here.

@@ -17,7 +17,7 @@ use crate::query::Options;
 use crate::query::answer::{Answer, Outcome};
 use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::solver::depth::sectors::{Search, Spin};
+use crate::solver::depth::sectors::{SectorsEnd, Spin};
 use crate::support::Symmetry;
 
 /// Two axes are as good as one if what they are off is this share of the relative tolerance.
@@ -223,12 +223,12 @@ impl<T: Real> Solver<'_, T, 3> {
             let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
             query.resume(known);
             let found = checked.and_then(|()| query.normalize()).and_then(|()| self.search_sectors(&mut query, &spin));
-            let iterations = query.iterations;
+            let iterations = query.iterations();
             *calls = query.support_calls();
             pair.discharge(uncharged);
             match found {
-                Ok(Search::Done(answer)) => return Some(answer),
-                Ok(Search::Stopped(stop)) => {
+                Ok(SectorsEnd::Done(answer)) => return Some(answer),
+                Ok(SectorsEnd::Stopped(stop)) => {
                     let outcome = stop.outcome(known.lower, known.upper, false, false);
                     return Some(Answer { outcome, iterations, support_calls: *calls, ..known.clone() });
                 }

@@ -191,9 +191,9 @@ impl<T: Real> Solver<'_, T, 3> {
     /// middle of its highest circle.)
     fn touching_edge(&self, query: &Query<'_, T, 3>, axis: &Vector<T, 3>, traced: &Traced<T>) -> Option<Simplex<T, 3>> {
         let vertices = self.polytope.vertices();
-        let best = query.direction.dot(axis);
+        let best = query.best.direction.dot(axis);
         let pole = if best > T::zero() { *axis } else { -axis };
-        if query.direction == pole {
+        if query.best.direction == pole {
             let Vertex { point, witness } = vertices.get(if best > T::zero() { 2 } else { 0 })?;
             let on_axis = |x: &Vector<T, 3>| axis * x.dot(axis);
             return Some(Simplex::new(Vertex { point: on_axis(point), witness: on_axis(witness) }));

@@ -376,7 +376,7 @@ impl<'p, 'a, T: Real, const N: usize> Pair<'p, 'a, T, N> {
         options: &Options<'q, T, N>,
     ) -> (Query<'q, T, N>, Result<(), Failure>) {
         let (mut query, checked) = Query::new(set, ball, set.radius(), *options);
-        query.seeks_rivals = false;
+        query.rivals.sought = false;
         query.count_calls(calls);
         (query, checked)
     }

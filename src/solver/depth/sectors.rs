@@ -93,7 +93,7 @@ pub(crate) struct Spin<T: Real> {
 }
 
 /// How a search by sectors ended.
-pub(crate) enum Search<T: Real> {
+pub(crate) enum SectorsEnd<T: Real> {
     /// With the answer.
     Done(Answer<T, 3>),
     /// At a limit.
@@ -223,7 +223,11 @@ impl<T: Real> Section<T> for Sector<'_, T> {
 
 impl<T: Real> Solver<'_, T, 3> {
     /// The search around the axis of `spin`. The query's error includes what the axes are off (module `depth`).
-    pub(crate) fn search_sectors(&mut self, query: &mut Query<'_, T, 3>, spin: &Spin<T>) -> Result<Search<T>, Failure> {
+    pub(crate) fn search_sectors(
+        &mut self,
+        query: &mut Query<'_, T, 3>,
+        spin: &Spin<T>,
+    ) -> Result<SectorsEnd<T>, Failure> {
         let axis = spin.axis;
         let limit = query.support_calls().saturating_add(CALLS);
         let poles = [-axis, axis];
@@ -231,7 +235,7 @@ impl<T: Real> Solver<'_, T, 3> {
         query.support(&guess)?;
         let raw = [query.support(&poles[0])?.0, query.support(&poles[1])?.0];
         if query.is_at_zero() {
-            return Ok(Search::Failed);
+            return Ok(SectorsEnd::Failed);
         }
         let mut start = azimuth(query, &axis);
         let offset = spin.offset * query.scale();
@@ -253,7 +257,7 @@ impl<T: Real> Solver<'_, T, 3> {
             let least = sector.place(&lowest, false)[1].at_most(sector.place(&highest, true)[1]);
             if sector.judge(query, least)?.is_none() {
                 // The axis itself is (nearly) the best direction: no arc around it.
-                return Ok(Search::Failed);
+                return Ok(SectorsEnd::Failed);
             }
             let traced = trace(&mut self.polytope, query, &sector, [lowest, farthest, highest])?;
             match traced {
@@ -266,7 +270,7 @@ impl<T: Real> Solver<'_, T, 3> {
                     }
                 }
                 Some(traced) if !matches!(traced.stop, Stop::Rounding | Stop::Capacity) => {
-                    return Ok(Search::Stopped(traced.stop));
+                    return Ok(SectorsEnd::Stopped(traced.stop));
                 }
                 _ if right.is_empty() => {
                     turn_down(query, &axis)?;
@@ -279,31 +283,31 @@ impl<T: Real> Solver<'_, T, 3> {
                 }
                 _ => {
                     if query.support_calls() > limit || right.push(middle).is_err() {
-                        return Ok(Search::Failed);
+                        return Ok(SectorsEnd::Failed);
                     }
                 }
             }
         }
         if !query.verify()? {
-            return Ok(Search::Failed);
+            return Ok(SectorsEnd::Failed);
         }
-        let Some(lower) = query.lower_from_offset(lower, query.margin()) else { return Ok(Search::Failed) };
+        let Some(lower) = query.lower_from_offset(lower, query.margin()) else { return Ok(SectorsEnd::Failed) };
         let witness = witness(query, &axis)?;
         // Witnesses that are short of the plane by more than the tolerance are none: expansion finds better ones.
         let foot = query.foot().unwrap_or_else(Vector::zeros);
-        if !(query.direction.dot(&(foot - witness.point())) <= query.slack()) {
-            return Ok(Search::Failed);
+        if !(query.best.direction.dot(&(foot - witness.point())) <= query.slack()) {
+            return Ok(SectorsEnd::Failed);
         }
         query.plan = Plan::Meridian;
         let answer = self.report(query, Stop::Met, lower, witness);
         // (What the axes are off is charged in all directions: too much where bodies are uneven.)
-        Ok(if answer.outcome.is_open() { Search::Failed } else { Search::Done(answer) })
+        Ok(if answer.outcome.is_open() { SectorsEnd::Failed } else { SectorsEnd::Done(answer) })
     }
 }
 
 /// The azimuth of the best direction.
 fn azimuth<T: Real>(query: &Query<'_, T, 3>, axis: &Vector<T, 3>) -> Vector<T, 3> {
-    let level = query.direction - axis * axis.dot(&query.direction);
+    let level = query.best.direction - axis * axis.dot(&query.best.direction);
     if norm(&level) > T::of(0.01) { unit(&(level - axis * axis.dot(&level))) } else { across(axis) }
 }
 
@@ -311,7 +315,7 @@ fn azimuth<T: Real>(query: &Query<'_, T, 3>, axis: &Vector<T, 3>) -> Vector<T, 3
 fn turn_down<T: Real>(query: &mut Query<'_, T, 3>, axis: &Vector<T, 3>) -> Result<(), Failure> {
     let mut tangent = T::one();
     for _ in 0..TURNS {
-        let (best, before) = (query.direction, query.ratio());
+        let (best, before) = (query.best.direction, query.ratio());
         let up = axis * axis.dot(&best);
         let cosine = T::one() / (T::one() + tangent * tangent).root();
         for sign in [T::one(), -T::one()] {
@@ -329,7 +333,7 @@ fn turn_down<T: Real>(query: &mut Query<'_, T, 3>, axis: &Vector<T, 3>) -> Resul
 /// arc, a line in most cases, then what a walk finds.
 fn witness<T: Real>(query: &mut Query<'_, T, 3>, axis: &Vector<T, 3>) -> Result<Simplex<T, 3>, Failure> {
     let foot = query.foot().unwrap_or_else(Vector::zeros);
-    let direction = query.direction;
+    let direction = query.best.direction;
     let near = query.slack() * T::of(0.25);
     let mut ask = |u: &Vector<T, 3>| query.ask(u).map(|vertex| Vertex { point: vertex.point - foot, ..vertex });
     let lean = axis * T::of(LEAN);
