@@ -24,7 +24,7 @@ pub struct Best<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Solver<'_, T, N> {
-    /// d_Q of one set after another: `each` gets the set's number, from 0, and its answer, and returns whether to go on.
+    /// d_Q of one set after another: `each` gets the set's number, from 0, and its answer, and ends the batch by `true`.
     ///
     /// ```
     /// use qdist::{Options, Workspace, qset::Ball, support::Sphere, Vector};
@@ -33,7 +33,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// let mut sum = 0.0;
     /// memory.solver().solve_each(spheres, &Ball::unit(), &Options::default(), |_, answer| {
     ///     sum += answer.lower;
-    ///     true
+    ///     false
     /// });
     /// assert!((sum - 2.0).abs() < 1e-9);
     /// ```
@@ -45,7 +45,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         mut each: impl FnMut(usize, Answer<T, N>) -> bool,
     ) {
         for (index, set) in sets.into_iter().enumerate() {
-            if !each(index, self.solve(&set, q, options)) {
+            if each(index, self.solve(&set, q, options)) {
                 return;
             }
         }

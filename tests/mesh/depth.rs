@@ -212,7 +212,7 @@ fn a_query_can_be_watched_and_stopped() {
         assert!(progress.upper <= best && (0.0..=1.0).contains(&progress.fraction));
         best = progress.upper;
         calls += 1;
-        calls < 10
+        calls >= 10
     };
     let answer = DepthSolver::new(&a, &b).depth(&pose, a.disp(), &DepthOptions::default(), Some(&mut watch));
     assert_eq!((answer.outcome, calls), (Outcome::Interrupted, 10));

@@ -70,7 +70,7 @@ fn the_caller_may_stop() {
     let mut told = Vec::new();
     let mut watch = |made: usize| {
         told.push(made);
-        made < 7
+        made >= 7
     };
     let samples = ContactSamples::new(a, b, 40, 5, Some(&mut watch));
     assert_eq!(told, [1, 2, 3, 4, 5, 6, 7]);

@@ -42,7 +42,7 @@ impl Bar {
                 let (lower, upper, queries) = (progress.lower, progress.upper, progress.queries);
                 self.0.set_message(format!("{name}: {lower:.6} .. {upper:.6} after {queries} queries"));
             }
-            true
+            false
         };
         ask(Some(&mut watch))
     }

@@ -100,7 +100,7 @@ fn answer_all(
             let (a, b) = (bodies.get(&query.a), bodies.get(&query.b));
             let mut tell = |made: usize| {
                 bar.say(&format!("{}: {made} contact samples", query.id));
-                true
+                false
             };
             let samples = ContactSamples::new(a, b, request.samples, request.seed, Some(&mut tell));
             (DepthSolver::new(a, b), samples)

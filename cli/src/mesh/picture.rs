@@ -90,7 +90,7 @@ fn way(solver: &mut DepthSolver, query: &Query, row: &Row, options: &DepthOption
         if progress.upper.is_finite() && nearer {
             seen.push((*progress.pose, progress.upper));
         }
-        true
+        false
     };
     if let Some(metric) = bodies::metric(solver.a(), row.kind) {
         solver.depth(&query.pose, metric, options, Some(&mut watch));

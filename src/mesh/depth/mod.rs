@@ -172,7 +172,7 @@ pub struct Progress<'a> {
     pub queries: u64,
 }
 
-/// What is called now and then during a query; false stops it, after some tens of queries at most that bring the best pose to contact.
+/// What is called now and then during a query; true stops it, after some tens of queries at most that bring the best pose to contact.
 pub type Watch<'a> = &'a mut (dyn FnMut(&Progress) -> bool + 'a);
 
 /// Two models and the memory of their queries.

@@ -126,7 +126,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let queries = self.queries();
         let progress =
             Progress { lower: self.lower, upper: self.upper, pose: &self.pose, fraction: self.fraction, queries };
-        if self.stop != Some(Outcome::Interrupted) && self.watch.as_mut().is_some_and(|watch| !watch(&progress)) {
+        if self.stop != Some(Outcome::Interrupted) && self.watch.as_mut().is_some_and(|watch| watch(&progress)) {
             self.stop = Some(Outcome::Interrupted);
         }
         self.stop == Some(Outcome::Interrupted)

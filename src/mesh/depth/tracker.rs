@@ -110,7 +110,7 @@ impl<'m> DepthTracker<'m> {
             effort: budget.certificate.unwrap_or_default(),
             ..DepthOptions::default()
         };
-        let mut watch = |_: &Progress| !late.is_some_and(|late| late());
+        let mut watch = |_: &Progress| late.is_some_and(|late| late());
         let search = Search::new(&mut self.solver, pose, metric, &options, Some(&mut watch));
         if !search.is_valid() {
             return search.answer(Outcome::Invalid);

@@ -65,7 +65,7 @@ pub struct ContactSamples {
 
 impl ContactSamples {
     /// Makes so many samples, from the random sequence of this number: the same bodies, count and seed give the same samples, and a larger
-    /// count the same with others behind. `watch` is told how many there are, after each; false stops, and what there is is kept.
+    /// count the same with others behind. `watch` is told how many there are, after each; true stops, and what there is is kept.
     ///
     /// All are free by the solid test, and touch to 1e-6 of A's diagonal. There are fewer only where no free pose can be written down. Cost: some 30
     /// collision queries each, a tenth of a millisecond to half of one for meshes of 3,000 triangles.
@@ -82,7 +82,7 @@ impl ContactSamples {
         while poses.len() < count {
             let Some(pose) = sampler.sample() else { break };
             poses.push(pose);
-            if watch.as_mut().is_some_and(|watch| !watch(poses.len())) {
+            if watch.as_mut().is_some_and(|watch| watch(poses.len())) {
                 break;
             }
         }
