@@ -8,6 +8,7 @@ use crate::scalar::Real;
 
 /// Why a contact, or what belongs to it, is refused. In a list of contacts [`GraspError`] says which one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// A coordinate of the position is not finite or too large.
     Position,

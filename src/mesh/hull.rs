@@ -14,6 +14,7 @@ use nalgebra::Point3;
 
 /// Why a set of points has no hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum HullError {
     /// There are no points.
     Empty,

@@ -30,6 +30,7 @@ pub struct MassProperties {
 
 /// Why a surface has no mass properties.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum MassError {
     /// There are no triangles.
     Empty,

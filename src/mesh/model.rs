@@ -8,6 +8,7 @@ use nalgebra::Point3;
 
 /// Why these arrays are no body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ModelError {
     /// They are no mesh.
     Mesh(MeshError),

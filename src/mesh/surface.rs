@@ -12,6 +12,7 @@ pub const MAX_COORDINATE: f64 = 1e60;
 
 /// Why these arrays are no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There is no triangle.
     NoTriangles,

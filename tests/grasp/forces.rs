@@ -780,7 +780,7 @@ fn contributions_of_any_kind() {
         check(&found, &contacts, &origin(1.0), norm, &external);
         compare(&found, &contacts, &origin(1.0), norm, &external);
         let failed = own(true);
-        assert_eq!((failed.forces.outcome, failed.forces.failure), (ForceOutcome::SupportFailed, 7));
+        assert_eq!((failed.forces.outcome, failed.forces.failure), (ForceOutcome::SupportFailed, Some(Failure(7))));
         assert_eq!((failed.forces.lower, failed.forces.upper), (0.0, f64::MAX));
         assert_eq!(failed.shares, vec![Vector::<f64, 6>::zeros(); 2]);
     }

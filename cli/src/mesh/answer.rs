@@ -66,6 +66,7 @@ fn outcome(outcome: Outcome) -> &'static str {
         Outcome::Budget => "budget",
         Outcome::Stuck => "stuck",
         Outcome::Invalid => "invalid",
+        _ => "other",
     }
 }
 

@@ -6,6 +6,7 @@ mod solver;
 
 use crate::math::Vector;
 use crate::scalar::Real;
+use crate::support::Failure;
 use core::fmt;
 pub use solver::ForceSolver;
 pub use solver::check;
@@ -36,6 +37,7 @@ impl<T: Real> Default for ForceOptions<T> {
 
 /// Why a search for contact forces is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ForceError {
     /// A coordinate of the external wrench is not finite or too large.
     Wrench,
@@ -62,6 +64,7 @@ impl core::error::Error for ForceError {}
 
 /// What a search for contact forces concluded. The bracket holds in each case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ForceOutcome {
     /// The bracket is as narrow as asked for, and so is the equilibrium.
     Converged,
@@ -85,6 +88,7 @@ pub enum ForceOutcome {
 /// The size is a multiple of the force caps (eq. 4): 1 is the caps themselves, 0.5 half of them. Where there are shares, the bracket is that of the
 /// wrench that they exert, which is -(external wrench) up to `residual`: on the very edge of what can be resisted that may make a difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Forces<T> {
     /// What was concluded.
     pub outcome: ForceOutcome,
@@ -98,6 +102,6 @@ pub struct Forces<T> {
     pub residual: T,
     /// Calls of the support function, those at the beginning not counted.
     pub iterations: u32,
-    /// The code of a [`Failure`](crate::support::Failure), else 0.
-    pub failure: i32,
+    /// Why a contribution gave no point, with outcome `SupportFailed`.
+    pub failure: Option<Failure>,
 }

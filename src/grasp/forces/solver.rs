@@ -163,20 +163,20 @@ impl<T: Real> ForceSolver<T> {
             direction: Vector::zeros(),
             residual: norm(external),
             iterations: 0,
-            failure: 0,
+            failure: None,
         };
         if external.iter().all(|&x| x == zero) {
             return Ok(forces);
         }
         forces.upper = T::HUGE;
         forces.direction = unit(&-external);
-        if let Err(Failure(code)) = self.search(set, options, &mut forces, shares, external) {
+        if let Err(failure) = self.search(set, options, &mut forces, shares, external) {
             shares.fill(Vector::zeros());
             forces = Forces {
                 outcome: ForceOutcome::SupportFailed,
                 upper: T::HUGE,
                 residual: norm(external),
-                failure: code,
+                failure: Some(failure),
                 ..forces
             };
         }

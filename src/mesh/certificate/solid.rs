@@ -8,6 +8,7 @@ use nalgebra::{Point3, Vector3};
 
 /// Why a mesh has no certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SolidError {
     /// No triangles.
     Empty,

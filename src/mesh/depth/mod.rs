@@ -118,6 +118,7 @@ impl Default for DepthOptions<'_> {
 
 /// How a query ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// The bodies do not overlap: both bounds are 0.
     Separated,

@@ -20,6 +20,7 @@ const DEPTH: usize = 40;
 
 /// Why points have no displacement metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DispError {
     /// They have no hull.
     Hull(HullError),

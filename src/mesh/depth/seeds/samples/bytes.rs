@@ -23,6 +23,7 @@ const TAIL: usize = 8;
 
 /// Why these bytes or poses are no samples of this pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SamplesError {
     /// The bytes do not begin as contact samples do.
     NotSamples,
