@@ -1,7 +1,7 @@
 //! Functions of the caller: support functions, unit sets, deadlines. What the header asks of them is what makes the calls right.
 
 use super::numbers::{MAX_DIMENSION, coordinates, length};
-use super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, qdist_interrupt};
+use super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, code, qdist_interrupt};
 use super::symmetry::qdist_mirrored;
 use core::cell::Cell;
 use core::ffi::c_void;
@@ -9,7 +9,7 @@ use qdist::NOT_FINITE;
 use qdist::internal::{norm, one_by_one};
 use qdist::qset::UnitSet;
 use qdist::support::Failure;
-use qdist::{Real, TwoWords, Vector};
+use qdist::{Options, Real, TwoWords, Vector};
 
 pub type SupportFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T, point: *mut T) -> i32;
 pub type ValueFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T) -> T;
@@ -62,13 +62,23 @@ impl Deadline {
         Self { function, user }
     }
 
-    /// Runs a query with this deadline.
+    /// Runs a query with these options and this deadline.
     #[inline(always)]
-    pub fn during<R>(&self, query: impl FnOnce(Option<&dyn Fn() -> bool>) -> R) -> R {
+    pub fn during<T: Copy, const N: usize, R>(
+        &self,
+        options: &Options<'_, T, N>,
+        query: impl FnOnce(&Options<'_, T, N>) -> R,
+    ) -> R {
+        self.asked(|interrupt| query(&Options { interrupt, ..*options }))
+    }
+
+    /// Does what asks for this deadline by itself.
+    #[inline(always)]
+    pub fn asked<R>(&self, work: impl FnOnce(Option<&dyn Fn() -> bool>) -> R) -> R {
         match self.function {
             // SAFETY: what the header asks of the caller, see `new`.
-            Some(function) => query(Some(&|| unsafe { function(self.user) } != 0)),
-            None => query(None),
+            Some(function) => work(Some(&|| unsafe { function(self.user) } != 0)),
+            None => work(None),
         }
     }
 }
@@ -135,7 +145,8 @@ impl<T: Real> CallbackUnit<T> {
     }
 
     /// The code of the vertex function, if that ended the query with `failure`.
-    pub fn code(&self, failure: i32) -> i32 {
+    pub fn code(&self, failure: Option<Failure>) -> i32 {
+        let failure = code(failure);
         if failure == NOT_FINITE && self.code.get() != 0 { self.code.get() } else { failure }
     }
 

@@ -126,6 +126,7 @@ pub(super) fn force_outcome(outcome: ForceOutcome) -> qdist_force_outcome {
         ForceOutcome::Precision => QDIST_FORCES_PRECISION,
         ForceOutcome::Iterations => QDIST_FORCES_ITERATIONS,
         ForceOutcome::SupportFailed => QDIST_FORCES_FAILED,
+        _ => QDIST_FORCES_PRECISION,
     }
 }
 
@@ -147,8 +148,8 @@ pub extern "C" fn qdist_force_outcome_string(outcome: qdist_force_outcome) -> *c
 pub(super) fn from_force(error: ForceError) -> qdist_status {
     match error {
         ForceError::Wrench => QDIST_ERROR_NONFINITE,
-        ForceError::Tolerance | ForceError::Limit => QDIST_ERROR_ARGUMENT,
         ForceError::Room => QDIST_ERROR_CAPACITY,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }
 
@@ -188,6 +189,7 @@ pub(super) fn from_contact(error: ContactError) -> qdist_status {
         ContactError::TorqueLimit { .. } => QDIST_ERROR_TORQUE_LIMIT,
         ContactError::Tolerance => QDIST_ERROR_TOLERANCE,
         ContactError::Room => QDIST_ERROR_CAPACITY,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }
 

@@ -7,7 +7,7 @@ use core::ffi::{c_char, c_void};
 use qdist::BodyError;
 use qdist::GraphError;
 use qdist::WorkspaceError;
-use qdist::support::ShapeError;
+use qdist::support::{Failure, ShapeError};
 use qdist::{Outcome, Plan};
 
 /// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
@@ -239,8 +239,13 @@ pub(super) fn status(check: Check) -> qdist_status {
 }
 
 /// Did arithmetic overflow, though no callback is to blame? Then nothing is written.
-pub(super) fn overflow(failure: i32) -> Check {
-    if failure == qdist::TOO_LARGE { Err(QDIST_ERROR_NONFINITE) } else { Ok(()) }
+pub(super) fn overflow(failure: Option<Failure>) -> Check {
+    if failure == Some(Failure(qdist::TOO_LARGE)) { Err(QDIST_ERROR_NONFINITE) } else { Ok(()) }
+}
+
+/// The code of a failure; 0 for none.
+pub(super) fn code(failure: Option<Failure>) -> i32 {
+    failure.map_or(0, |Failure(code)| code)
 }
 
 pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
@@ -257,25 +262,27 @@ pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
         Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
         Outcome::Interrupted => QDIST_INTERRUPTED,
         Outcome::Unbounded => QDIST_UNBOUNDED,
+        // (There are no others. The bracket would be true.)
+        _ => QDIST_PRECISION,
     }
 }
 
 pub(super) fn plan(plan: Plan) -> qdist_plan {
     match plan {
-        // (Two bodies on one axis are measured by qdist_depth3 only, which does not tell.)
-        Plan::Expansion | Plan::Meridian => QDIST_PLAN_EXPANSION,
         Plan::Distance => QDIST_PLAN_DISTANCE,
         Plan::Rays => QDIST_PLAN_RAYS,
         Plan::Cones => QDIST_PLAN_CONES,
         Plan::Warm => QDIST_PLAN_WARM,
+        // (Expansion. Two bodies on one axis are measured by qdist_depth3 only, which does not tell.)
+        _ => QDIST_PLAN_EXPANSION,
     }
 }
 
 pub(super) fn from_shape(error: ShapeError) -> qdist_status {
     match error {
-        ShapeError::Negative | ShapeError::Empty | ShapeError::Direction => QDIST_ERROR_ARGUMENT,
         ShapeError::NonFinite => QDIST_ERROR_NONFINITE,
         ShapeError::NotOrthonormal => QDIST_ERROR_ROTATION,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }
 
@@ -287,6 +294,7 @@ pub(super) fn from_graph(error: GraphError) -> qdist_status {
         GraphError::Interrupted => QDIST_ERROR_INTERRUPTED,
         GraphError::Capacity => QDIST_ERROR_CAPACITY,
         GraphError::Words => QDIST_ERROR_WORKSPACE_SIZE,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }
 
@@ -294,6 +302,7 @@ pub(super) fn from_body(error: BodyError) -> qdist_status {
     match error {
         BodyError::NonFinite => QDIST_ERROR_NONFINITE,
         BodyError::Rotation => QDIST_ERROR_ROTATION,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }
 
@@ -302,5 +311,6 @@ pub(super) fn from_workspace(error: WorkspaceError) -> qdist_status {
         WorkspaceError::Capacity => QDIST_ERROR_CAPACITY,
         WorkspaceError::Size => QDIST_ERROR_WORKSPACE_SIZE,
         WorkspaceError::Alignment => QDIST_ERROR_ALIGNMENT,
+        _ => QDIST_ERROR_ARGUMENT,
     }
 }

@@ -4,20 +4,16 @@ use super::super::callback::Deadline;
 use super::super::handle::{self, qdist_solver};
 use super::super::numbers::{MAX_DIMENSION, MAX_POINTS, finite, first, flag, length, padded};
 use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, outcome, overflow, plan};
+use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, code, outcome, overflow, plan};
 use super::query::{qdist_depth_f64, qdist_options_f64, qdist_result_f64};
 use super::sets::{CheckedSet, qdist_set_f64};
 use super::unit_sets::{CheckedUnit, qdist_unit_f64};
-#[cfg(feature = "grasp")]
-use qdist::Plan;
 use qdist::internal::{alone, one_by_one};
 use qdist::qset::UnitSet;
 use qdist::{Answer, Depth, Options, Outcome, Solver, Vector};
-#[cfg(feature = "grasp")]
-use qdist::{Simplex, Vertex};
 
 /// The options as the solver knows them, and the deadline.
-pub(super) fn convert<const N: usize>(options: In<qdist_options_f64>) -> Check<(Options<f64, N>, Deadline)> {
+pub(super) fn convert<const N: usize>(options: In<qdist_options_f64>) -> Check<(Options<'static, f64, N>, Deadline)> {
     if options.is_null() {
         return Ok((Options::default(), Deadline::NEVER));
     }
@@ -40,7 +36,8 @@ pub(super) fn convert<const N: usize>(options: In<qdist_options_f64>) -> Check<(
         None
     };
     let deadline = Deadline::new(options.interrupt, options.interrupt_user);
-    Ok((Options { absolute, relative, threshold, max_iterations: options.max_iterations, guess }, deadline))
+    let max_iterations = (options.max_iterations > 0).then_some(options.max_iterations);
+    Ok((Options { absolute, relative, threshold, max_iterations, guess, interrupt: None }, deadline))
 }
 
 pub(super) fn conclude(outcome: Outcome) -> Check {
@@ -69,7 +66,7 @@ pub(super) fn from_depth<const N: usize>(depth: &Depth<f64, N>) -> qdist_depth_f
         support_calls: depth.support_calls,
         vertices_used: alone(&depth.vertices) as u32,
         facets_used: alone(&depth.facets) as u32,
-        callback_code: depth.failure,
+        callback_code: code(depth.failure),
     }
 }
 
@@ -88,7 +85,7 @@ pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) ->
         rival: answer.rival.as_ref().map_or([0.0; MAX_DIMENSION], vector),
         weights: [0.0; MAX_POINTS],
         points: [0.0; MAX_POINTS * MAX_DIMENSION],
-        point_count: answer.witness.corners.len() as u32,
+        point_count: answer.witness.corners().len() as u32,
         dimension: answer.dimension as u32,
         iterations: answer.iterations,
         support_calls: answer.support_calls,
@@ -98,10 +95,10 @@ pub(super) fn from_answer<const N: usize>(answer: &Answer<f64, N>, code: i32) ->
         splits: answer.splits,
         callback_code: code,
     };
-    for (to, corner) in result.weights.iter_mut().zip(&answer.witness.corners) {
+    for (to, corner) in result.weights.iter_mut().zip(answer.witness.corners()) {
         *to = corner.weight;
     }
-    let coordinates = answer.witness.corners.iter().flat_map(|corner| corner.vertex.point.iter());
+    let coordinates = answer.witness.corners().iter().flat_map(|corner| corner.vertex.point.iter());
     for (to, &x) in result.points.iter_mut().zip(coordinates) {
         *to = x;
     }
@@ -114,25 +111,12 @@ pub(super) fn to_answer(result: &qdist_result_f64) -> Check<Answer<f64, 6>> {
     finite(&[result.lower, result.upper, result.unit])?;
     finite(&result.direction).and(finite(&result.support)).and(finite(&result.rival))?;
     let rival = flag(result.has_rival)?.then(|| Vector::from(result.rival));
-    Ok(Answer {
-        outcome: Outcome::Converged,
-        lower: result.lower,
-        upper: result.upper,
-        direction: Vector::from(result.direction),
-        support: Vector::from(result.support),
-        unit: result.unit,
-        rival,
-        plan: Plan::Expansion,
-        witness: Simplex::new(Vertex::empty()),
-        dimension: result.dimension as usize,
-        iterations: result.iterations,
-        support_calls: result.support_calls,
-        vertices: 0,
-        facets: 0,
-        cones: 0,
-        splits: 0,
-        failure: 0,
-    })
+    let mut answer = Answer::unknown();
+    (answer.outcome, answer.lower, answer.upper) = (Outcome::Converged, result.lower, result.upper);
+    (answer.direction, answer.support) = (Vector::from(result.direction), Vector::from(result.support));
+    (answer.unit, answer.rival, answer.dimension) = (result.unit, rival, result.dimension as usize);
+    (answer.iterations, answer.support_calls) = (result.iterations, result.support_calls);
+    Ok(answer)
 }
 
 /// The arguments of a query of one set.
@@ -153,8 +137,7 @@ impl Question {
             &mut Solver<'_, f64, N>,
             &CheckedSet<'_>,
             &dyn UnitSet<f64, N>,
-            &Options<f64, N>,
-            Option<&dyn Fn() -> bool>,
+            &Options<'_, f64, N>,
         ) -> Answer<f64, N>,
     ) -> Check<(Answer<f64, N>, i32)> {
         self.result.checked()?;
@@ -164,7 +147,7 @@ impl Question {
         let a = CheckedSet::new::<N>(a)?;
         let (options, deadline) = convert::<N>(self.options)?;
         let q = CheckedUnit::new::<N>(self.q)?;
-        let answer = deadline.during(|interrupt| query(&mut solver, &a, q.unit(), &options, interrupt));
+        let answer = deadline.during(&options, |options| query(&mut solver, &a, q.unit(), options));
         overflow(answer.failure)?;
         let code = q.code(answer.failure);
         Ok((answer, code))
@@ -180,6 +163,6 @@ impl Question {
     /// `qdist_solve`
     #[inline(always)]
     pub fn solve<const N: usize>(&self) -> Check {
-        self.conclude(self.ask::<N>(|solver, a, q, options, interrupt| solver.solve_until(a, q, options, interrupt))?)
+        self.conclude(self.ask::<N>(|solver, a, q, options| solver.solve(a, q, options))?)
     }
 }

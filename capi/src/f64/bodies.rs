@@ -100,6 +100,9 @@ pub(super) trait Placed<const N: usize>: Copy + Gaps + 'static {
 /// A body that has passed the checks, where it lies, as a [`Support`] in its own frame.
 pub(super) struct Checked<'a, B>(&'a B);
 
+// SAFETY: a checked body is seen during one call alone, which asks it from the thread that made the call.
+unsafe impl<B> Sync for Checked<'_, B> {}
+
 impl<'a, B> Checked<'a, B> {
     /// Checks the numbers, except for the pose, which [`place`](Self::place) does.
     #[inline(always)]
@@ -343,12 +346,7 @@ pub(super) fn depth<B: Placed<N>, const N: usize>(
     b: In<B>,
     options: In<qdist_options_f64>,
     result: Out<qdist_depth_f64>,
-    query: impl FnOnce(
-        &mut Solver<'_, f64, N>,
-        [&Body<'_, f64, N>; 2],
-        &Options<f64, N>,
-        Option<&dyn Fn() -> bool>,
-    ) -> Depth<f64, N>,
+    query: impl FnOnce(&mut Solver<'_, f64, N>, [&Body<'_, f64, N>; 2], &Options<'_, f64, N>) -> Depth<f64, N>,
 ) -> Check {
     result.checked()?;
     let (one, other) = (a.get()?, b.get()?);
@@ -365,7 +363,7 @@ pub(super) fn depth<B: Placed<N>, const N: usize>(
     let (one, other) = (one.place(), other.place());
     let depth = match (&one, &other, &options) {
         (Ok(a), Ok(b), Ok((options, deadline))) => {
-            deadline.during(|interrupt| query(&mut solver, [a, b], options, interrupt))
+            deadline.during(options, |options| query(&mut solver, [a, b], options))
         }
         (_, _, Err(status)) => return Err(*status),
         (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),

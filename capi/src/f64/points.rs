@@ -115,7 +115,7 @@ pub extern "C" fn qdist_hull_prepare_f64(
         }
         let words = graph.zeroed(graph_capacity as usize)?;
         Deadline::new(interrupt, interrupt_user)
-            .during(|interrupt| solver.prepare_hull_until(as_points(coordinates), words, interrupt).map(|_| ()))
+            .asked(|interrupt| solver.prepare_hull(as_points(coordinates), words, interrupt).map(|_| ()))
             .map_err(from_graph)?;
         hull.put(qdist_hull_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
     };
@@ -155,7 +155,7 @@ pub extern "C" fn qdist_hull_large_prepare_f64(
         let rows = workspace.rows::<HullFacet>();
         let (words, facets) = (graph.zeroed(graph_capacity as usize)?, rows.zeroed(facets)?);
         Deadline::new(interrupt, interrupt_user)
-            .during(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
+            .asked(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
             .map_err(from_graph)?;
         hull.put(qdist_hull_large_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
     };

@@ -184,9 +184,7 @@ pub extern "C" fn qdist_depth3_f64(
     options: In<qdist_options_f64>,
     result: Out<qdist_depth_f64>,
 ) -> qdist_status {
-    status(depth(solver, a, b, options, result, |solver, [a, b], options, interrupt| {
-        solver.depth_until(a, b, options, interrupt)
-    }))
+    status(depth(solver, a, b, options, result, |solver, [a, b], options| solver.depth(a, b, options)))
 }
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be

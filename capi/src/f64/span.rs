@@ -35,7 +35,5 @@ pub extern "C" fn qdist_solve_in_span_f64(
 }
 
 fn solve_in_span<const N: usize>(question: &Question) -> Check {
-    question.conclude(
-        question.ask::<N>(|solver, a, q, options, interrupt| solver.solve_in_span_until(a, q, options, interrupt))?,
-    )
+    question.conclude(question.ask::<N>(|solver, a, q, options| solver.solve_in_span(a, q, options))?)
 }

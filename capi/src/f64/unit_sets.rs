@@ -7,12 +7,13 @@
 use super::super::callback::{CallbackUnit, Parts};
 use super::super::numbers::{length, semi_axes};
 use super::super::pointer::{In, Out, gaps};
-use super::super::status::{Check, QDIST_ERROR_DIMENSION, from_shape, qdist_status, status};
+use super::super::status::{Check, QDIST_ERROR_DIMENSION, code, from_shape, qdist_status, status};
 use super::super::symmetry::qdist_mirrored;
 use super::points::qdist_points_f64;
 use super::unit_shapes::{fill_box, fill_cross, fill_ellipsoid, fill_segment, fill_vertices};
 use core::ffi::c_void;
 use qdist::qset::{Ball, UnitSet};
+use qdist::support::Failure;
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.
@@ -185,9 +186,9 @@ impl CheckedUnit {
     }
 
     /// The failure of a query as the caller sees it.
-    pub(super) fn code(&self, failure: i32) -> i32 {
+    pub(super) fn code(&self, failure: Option<Failure>) -> i32 {
         match self {
-            Self::Ball(_) => failure,
+            Self::Ball(_) => code(failure),
             Self::Other(unit) => unit.code(failure),
         }
     }

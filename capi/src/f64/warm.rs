@@ -172,13 +172,14 @@ impl qdist_tracker_f64 {
             return Err(QDIST_ERROR_DIMENSION);
         }
         finite(&[self.lower])?;
-        let mut tracker = Tracker { lower: self.lower, ..Tracker::new() };
+        let lower = Some(self.lower).filter(|&lower| lower > -f64::HUGE);
+        let mut tracker = Tracker { lower, ..Tracker::new() };
         for (to, from) in tracker.directions.iter_mut().zip(&self.directions) {
             let from = first(from, N)?;
             finite(from)?;
             let squared = dot(from, from);
             if squared > 0.98 && squared < 1.02 {
-                *to = Vector::from_iterator(from.iter().copied()) / squared.root();
+                *to = Some(Vector::from_iterator(from.iter().copied()) / squared.root());
             } else if !from.iter().all(|&x| x == 0.0) {
                 return Err(QDIST_ERROR_ARGUMENT);
             }
@@ -188,18 +189,18 @@ impl qdist_tracker_f64 {
 
     fn lower_after<const N: usize>(&self, q: In<qdist_unit_f64>, moved: f64) -> Check<f64> {
         let tracker = self.checked::<N>()?;
-        Ok(tracker.lower_after(moved, CheckedUnit::new::<N>(q)?.unit()))
+        Ok(tracker.lower_after(moved, CheckedUnit::new::<N>(q)?.unit()).unwrap_or(-f64::HUGE))
     }
 }
 
 fn solve_warm<const N: usize>(question: &Question, tracker: Out<qdist_tracker_f64>, moved: f64) -> Check {
     finite(&[moved])?;
     let mut memory = tracker.get()?.checked::<N>()?;
-    let answered = question
-        .ask::<N>(|solver, a, q, options, interrupt| solver.solve_warm(&mut memory, a, q, moved, options, interrupt))?;
+    let moved = (moved >= 0.0).then_some(moved);
+    let answered = question.ask::<N>(|solver, a, q, options| solver.solve_warm(&mut memory, a, q, moved, options))?;
     let mut noted = qdist_tracker_f64::new(N as u32);
-    noted.lower = memory.lower;
-    for (to, from) in noted.directions.iter_mut().zip(&memory.directions) {
+    noted.lower = memory.lower.unwrap_or(-f64::HUGE);
+    for (to, from) in noted.directions.iter_mut().zip(memory.directions.iter().flatten()) {
         *to = padded(from.iter().copied());
     }
     tracker.put(noted)?;

@@ -78,6 +78,8 @@ fn outcome(outcome: Outcome) -> qdist_mesh_outcome {
         Outcome::Budget => QDIST_MESH_BUDGET,
         Outcome::Stuck => QDIST_MESH_STUCK,
         Outcome::Invalid => QDIST_MESH_INVALID,
+        // (There are no others. The bracket would be true.)
+        _ => QDIST_MESH_BOUNDED,
     }
 }
 
@@ -240,7 +242,7 @@ pub extern "C" fn qdist_mesh_pair_depth(
         let model = pair.a.clone();
         let metric = query.metric.of(&model)?;
         let found = pair.ask(|solver| {
-            let mut watch = |progress: &Progress| query.goes_on(progress);
+            let mut watch = |progress: &Progress| query.is_stopped(progress);
             let watch = query.watch.is_some().then_some(&mut watch as &mut dyn FnMut(&Progress) -> bool);
             solver.depth(&pose, metric, &query.options(), watch)
         })?;
@@ -300,7 +302,7 @@ impl Query {
     }
 
     /// Asks the caller's function.
-    fn goes_on(&self, progress: &Progress) -> bool {
+    fn is_stopped(&self, progress: &Progress) -> bool {
         let told = qdist_mesh_progress {
             lower: progress.lower,
             upper: progress.upper.min(f64::MAX),
@@ -309,6 +311,6 @@ impl Query {
             queries: progress.queries,
         };
         // SAFETY: the header: `watch` may be called with `watch_user` during the call.
-        self.watch.is_none_or(|watch| unsafe { watch(self.user, &told) } == 0)
+        self.watch.is_some_and(|watch| unsafe { watch(self.user, &told) } != 0)
     }
 }

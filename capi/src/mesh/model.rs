@@ -127,7 +127,7 @@ fn from_model(error: ModelError) -> (qdist_status, Option<usize>) {
         ModelError::Mesh(MeshError::IndexOutOfRange { triangle, .. }) => (QDIST_ERROR_MESH_INDEX, Some(triangle)),
         ModelError::Mesh(MeshError::BadCoordinate { vertex }) => (QDIST_ERROR_MESH_VERTEX, Some(vertex)),
         // Points without a hull would have been refused above.
-        ModelError::Disp(_) => (QDIST_ERROR_MESH_COLLINEAR, None),
+        _ => (QDIST_ERROR_MESH_COLLINEAR, None),
     }
 }
 

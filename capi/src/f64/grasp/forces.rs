@@ -7,7 +7,7 @@
 use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
 use super::super::super::numbers::{finite, length, padded};
 use super::super::super::pointer::{Defaults, In, Out, gaps, versioned};
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, qdist_status, status};
+use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, code, qdist_status, status};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use super::wrenches::{Wrenches, qdist_wrenches_f64};
 use qdist::Vector;
@@ -133,8 +133,8 @@ pub(super) fn resist<C: Contribution<f64>>(
     let rows = shares.rows::<Vector<f64, 6>>();
     let list = rows.zeroed(set.contributions().len())?;
     let mut found = solver.resist(set, &external, &options, list).map_err(from_force)?;
-    if let Err(Failure(code)) = also(&solver) {
-        (found.outcome, found.failure) = (ForceOutcome::SupportFailed, code);
+    if let Err(failure) = also(&solver) {
+        (found.outcome, found.failure) = (ForceOutcome::SupportFailed, Some(failure));
     }
     if !memory.is_null() {
         let mut kept = qdist_force_memory_f64 { count: 0, directions: [0.0; 36] };
@@ -153,7 +153,7 @@ pub(super) fn resist<C: Contribution<f64>>(
         direction: padded(found.direction.iter().copied()),
         residual: found.residual,
         iterations: found.iterations,
-        callback_code: found.failure,
+        callback_code: code(found.failure),
     })?;
     if found.outcome == ForceOutcome::SupportFailed { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
 }

@@ -72,7 +72,7 @@ pub extern "C" fn qdist_force_closure_f64(
             Some(list) => list,
             None => &checked,
         };
-        let found = deadline.during(|interrupt| solver.force_closure_until(set, &options, interrupt));
+        let found = deadline.during(&options, |options| solver.force_closure(set, options));
         let (verdict, radius, direction) = match found {
             Closure::Closed { radius } => (QDIST_CLOSURE_CLOSED, radius, [0.0; 6]),
             Closure::Open { direction } => (QDIST_CLOSURE_OPEN, 0.0, padded(direction.iter().copied())),
@@ -106,7 +106,7 @@ pub extern "C" fn qdist_best_of6_f64(
         let (options, deadline) = convert::<6>(options)?;
         let q = CheckedUnit::new::<6>(q)?;
         let checked = sets.iter().filter_map(|set| CheckedSet::new::<6>(set).ok());
-        let found = deadline.during(|interrupt| solver.best_of_until(checked, q.unit(), &options, interrupt));
+        let found = deadline.during(&options, |options| solver.best_of(checked, q.unit(), options));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;
         overflow(found.answer.failure)?;
         best.put_version(qdist_best_f64 {
@@ -115,7 +115,7 @@ pub extern "C" fn qdist_best_of6_f64(
             ceiling: found.ceiling,
             result: from_answer(&found.answer, q.code(found.answer.failure)),
         })?;
-        if found.answer.failure != 0 { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
+        if found.answer.failure.is_some() { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
     };
     status(solve())
 }
