@@ -146,6 +146,13 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         if holds { lower.at_least(self.floor.lower) } else { lower }
     }
 
+    /// Is d at least the threshold, whatever A's heights? d >= 0 is known of a set that contains the origin.
+    pub fn is_above_anyway(&self) -> bool {
+        self.options.threshold.is_some_and(|threshold| threshold <= T::zero())
+            && self.contains_origin()
+            && self.upper() >= T::zero()
+    }
+
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
     /// without margins.
     #[inline]

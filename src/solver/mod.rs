@@ -168,6 +168,9 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         query: &mut Query<'_, T, N>,
         plan: impl FnOnce(&mut Polytope<'_, T, N>, &mut Query<'_, T, N>, Option<Stop>) -> Result<E, Failure>,
     ) -> Result<Opening<T, N, E>, Failure> {
+        if query.is_above_anyway() {
+            return Ok(Opening { end: Err(Stop::Above), near: None });
+        }
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
         let mut floor = None;

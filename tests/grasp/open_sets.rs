@@ -81,6 +81,26 @@ impl Support<f64, 6> for Silent<'_> {
 }
 
 /// Without the set's word the nearest point shows how far below 0 d may be: by no more than rounding.
+/// "Is it at least 0, or less?" is known before anything is asked.
+#[test]
+fn a_threshold_that_no_open_grasp_can_miss() {
+    let mut dice = Dice::new(23);
+    let mut memory = Memory::new::<f64, 6>(512, 4000);
+    for case in 0..100 {
+        let primitives = open_grasp(&mut dice, 2 + case % 6);
+        let w = WrenchSet::new(&primitives, if case % 2 == 0 { Norm::L1 } else { Norm::LInf });
+        for q in units() {
+            for threshold in [0.0, -1e-3] {
+                let options = Options { threshold: Some(threshold), ..Options::default() };
+                let answer = memory.solver::<f64, 6>().solve(&w, &*q, &options);
+                assert_eq!(answer.outcome, Outcome::Above, "{case} {threshold}");
+                assert!(answer.lower == 0.0 && answer.upper >= 0.0, "{case} {:e} {:e}", answer.lower, answer.upper);
+                assert!(answer.support_calls <= 16, "{case} {threshold}: {}", answer.support_calls);
+            }
+        }
+    }
+}
+
 #[test]
 fn an_open_grasp_that_does_not_tell() {
     let mut dice = Dice::new(21);
