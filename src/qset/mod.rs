@@ -14,9 +14,11 @@ use crate::math::Vector;
 use crate::scalar::Real;
 use crate::support::Failure;
 
+mod round;
 mod sets;
 
-pub use sets::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSetFn, Vertices};
+pub use round::{Ball, UnitEllipsoid};
+pub use sets::{CrossPolytope, Segment, UnitBox, UnitSetFn, Vertices};
 
 /// The support function of Q.
 pub trait UnitSet<T: Real, const N: usize> {
