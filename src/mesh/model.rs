@@ -5,6 +5,7 @@ use super::mass::MassProperties;
 use super::metric::{Disp, DispError, Sigma};
 use super::{Mesh, MeshError};
 use nalgebra::Point3;
+use std::sync::Arc;
 
 /// Why these arrays are no body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,7 @@ impl From<DispError> for ModelError {
 /// A mesh with its metrics, and convex pieces where lower bounds are wanted. It never changes, and any number of solvers may share it.
 #[derive(Clone, Debug)]
 pub struct Model {
-    mesh: Mesh,
+    mesh: Arc<Mesh>,
     disp: Disp,
     sigma: Option<Sigma>,
     mass: Option<MassProperties>,
@@ -76,7 +77,7 @@ impl Model {
         let disp = Disp::new(&points)?;
         let mass = mesh.is_solid().then(|| MassProperties::new(mesh.vertices(), mesh.triangles()).ok()).flatten();
         let sigma = mass.as_ref().map(Sigma::new);
-        Ok(Model { mesh, disp, sigma, mass, pieces: None })
+        Ok(Model { mesh: Arc::new(mesh), disp, sigma, mass, pieces: None })
     }
 
     /// Adds the convex pieces from which depth queries prove lower bounds; both bodies need them. Without, `lower` is 0.
@@ -86,7 +87,7 @@ impl Model {
     ///
     /// Cost: up to a second for 3,000 triangles.
     pub fn with_pieces(mut self, options: &BuildOptions) -> Result<Model, SolidError> {
-        let mut pieces = Pieces::new(self.mesh.vertices(), self.mesh.triangles(), options)?;
+        let mut pieces = Pieces::of_mesh(self.mesh.clone(), options)?;
         // A bound for what is inside is none for queries that see a surface only.
         if !self.is_solid() {
             let inverted = self.mesh.report().inverted_components.first();

@@ -67,7 +67,7 @@ pub(super) enum Place {
 }
 
 /// The point of a triangle that is nearest to p (Ericson, *Real-Time Collision Detection*, 5.1.5). For a degenerate triangle it is some point
-/// of it; the edges then have the nearest one.
+/// of it, and always a number; the edges then have the nearest one.
 pub(super) fn nearest_on_triangle(p: &Point3<f64>, [a, b, c]: &Triangle) -> (Point3<f64>, Place) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
@@ -81,7 +81,7 @@ pub(super) fn nearest_on_triangle(p: &Point3<f64>, [a, b, c]: &Triangle) -> (Poi
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3)), Place::Edge(0));
+        return if d1 > d3 { (a + ab * (d1 / (d1 - d3)), Place::Edge(0)) } else { (*a, Place::Corner(0)) };
     }
     let cp = p - c;
     let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
@@ -90,15 +90,20 @@ pub(super) fn nearest_on_triangle(p: &Point3<f64>, [a, b, c]: &Triangle) -> (Poi
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6)), Place::Edge(2));
+        return if d2 > d6 { (a + ac * (d2 / (d2 - d6)), Place::Edge(2)) } else { (*a, Place::Corner(0)) };
     }
     let va = d3 * d6 - d5 * d4;
     let (x, y) = (d4 - d3, d5 - d6);
     if va <= 0.0 && x >= 0.0 && y >= 0.0 {
-        return (b + (c - b) * (x / (x + y)), Place::Edge(1));
+        return if x + y > 0.0 { (b + (c - b) * (x / (x + y)), Place::Edge(1)) } else { (*b, Place::Corner(1)) };
     }
     let whole = va + vb + vc;
-    (a + ab * (vb / whole) + ac * (vc / whole), Place::Face)
+    if whole > 0.0 { (a + ab * (vb / whole) + ac * (vc / whole), Place::Face) } else { (*a, Place::Corner(0)) }
+}
+
+/// The same for the origin, of a triangle by vectors to its corners.
+pub(super) fn nearest_to_origin(corners: &[Vector3<f64>; 3]) -> Vector3<f64> {
+    nearest_on_triangle(&Point3::origin(), &corners.map(Point3::from)).0.coords
 }
 
 /// Parameters in [0, 1] of the nearest points of two segments p + s d, q + t e (Ericson, 5.1.9). Parallel ones have some

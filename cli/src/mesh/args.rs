@@ -49,7 +49,7 @@ pub struct Request {
     metric: Option<Kind>,
     /// How long to search
     #[arg(long, default_value = "default")]
-    effort: Search,
+    effort: Level,
     /// Number of the random sequence
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -66,7 +66,7 @@ pub struct Request {
 
 /// [`Effort`] by name.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Search {
+enum Level {
     Fast,
     Default,
     Heavy,
@@ -95,9 +95,9 @@ impl Request {
 
     pub fn effort(&self) -> Effort {
         match self.effort {
-            Search::Fast => Effort::Fast,
-            Search::Default => Effort::Default,
-            Search::Heavy => Effort::Heavy,
+            Level::Fast => Effort::Fast,
+            Level::Default => Effort::Default,
+            Level::Heavy => Effort::Heavy,
         }
     }
 }

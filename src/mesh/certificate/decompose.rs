@@ -1,9 +1,9 @@
 //! Which pieces: the whole solid where it is convex; else polytopes grown from the centres of maximal inscribed balls, largest ball
 //! first, wherever no piece covers the ball yet: at first half of it, so that every part of the solid has a piece, then nearly all of it.
 
+use super::cell::Plane;
 use super::grow::{Grown, grow, metric_of};
 use super::piece::{Piece, prove};
-use super::polytope::Plane;
 use super::solid::Solid;
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,11 +56,12 @@ impl Bounded {
 
 /// The whole solid, when it is convex.
 pub(super) fn whole(solid: &Solid) -> Option<Piece> {
-    let count = solid.triangles.len() as f64 * 3.0;
-    let middle = solid.triangles.iter().flatten().map(|&i| solid.vertices[i] / count).sum::<Vector3<f64>>();
-    let mut used = vec![false; solid.vertices.len()];
-    solid.triangles.iter().flatten().for_each(|&i| used[i] = true);
-    let corners: Vec<_> = solid.vertices.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p - middle).collect();
+    let (vertices, triangles) = (solid.mesh.vertices(), solid.mesh.triangles());
+    let count = triangles.len() as f64 * 3.0;
+    let middle = solid.corners().flatten().map(|p| p / count).sum::<Vector3<f64>>();
+    let mut used = vec![false; vertices.len()];
+    triangles.iter().flatten().for_each(|&i| used[i as usize] = true);
+    let corners: Vec<_> = vertices.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p.coords - middle).collect();
     prove(solid, middle, &corners, &[])
 }
 
@@ -105,13 +106,13 @@ fn cover(solid: &Solid, options: &BuildOptions) -> Vec<Piece> {
 fn around(solid: &Solid, center: Vector3<f64>, rounds: usize, snap: f64) -> Vec<Grown> {
     let Some(first) = grow(solid, center, &Matrix3::identity(), snap) else { return Vec::new() };
     let mut best: Option<(f64, Grown)> = None;
-    let mut moments = first.polytope.moments();
+    let mut moments = first.cell.moments();
     let mut seed = first.seed;
     for _ in 0..rounds {
         seed += moments.centroid;
         let Some(metric) = metric_of(&moments.covariance) else { break };
         let Some(next) = grow(solid, seed, &metric, snap) else { break };
-        moments = next.polytope.moments();
+        moments = next.cell.moments();
         if best.as_ref().is_none_or(|(volume, _)| moments.volume > *volume) {
             best = Some((moments.volume, next));
         }
@@ -120,7 +121,7 @@ fn around(solid: &Solid, center: Vector3<f64>, rounds: usize, snap: f64) -> Vec<
 }
 
 fn bounded(solid: &Solid, grown: &Grown) -> Option<Bounded> {
-    let corners = grown.polytope.corners(NEAR * grown.inradius());
+    let corners = grown.cell.corners(NEAR * grown.inradius());
     let piece = prove(solid, grown.seed, &corners, &grown.planes)?;
     Some(Bounded { piece, planes: grown.planes.clone() })
 }

@@ -9,15 +9,16 @@
 //! Where the nearest point is on a reentrant edge or corner, the triangle's own plane separates as well, and may leave more: it is
 //! taken where its distance is at least a share `snap` of the point's. So polyhedral solids get pieces with their own faces.
 
-use super::polytope::{Plane, Polytope};
-use super::solid::{Solid, nearest_to_origin};
+use super::super::triangle::nearest_to_origin;
+use super::cell::{Cell, Plane};
+use super::solid::Solid;
 use nalgebra::{Matrix3, Vector3};
 
 /// A polytope grown around `seed`.
 pub(super) struct Grown {
     pub seed: Vector3<f64>,
     /// Relative to the seed.
-    pub polytope: Polytope,
+    pub cell: Cell,
     /// Relative to the seed, with unit normals.
     pub planes: Vec<Plane>,
 }
@@ -39,24 +40,25 @@ const MOST_PLANES: usize = 200;
 /// is taken when its distance is at least the share `snap` of that of its nearest point. `None` where the polytope would
 /// be too thin or too intricate.
 pub(super) fn grow(solid: &Solid, seed: Vector3<f64>, to_ball: &Matrix3<f64>, snap: f64) -> Option<Grown> {
-    let vertices: Vec<_> = solid.vertices.iter().map(|p| p - seed).collect();
+    let vertices: Vec<_> = solid.mesh.vertices().iter().map(|p| p.coords - seed).collect();
     let mapped: Vec<_> = vertices.iter().map(|p| to_ball * p).collect();
     let from_ball = to_ball.try_inverse()?.transpose();
     let mut order: Vec<_> = solid
-        .triangles
+        .mesh
+        .triangles()
         .iter()
         .map(|t| {
-            let nearest = nearest_to_origin(&t.map(|i| mapped[i]));
+            let nearest = nearest_to_origin(&t.map(|i| mapped[i as usize]));
             (nearest.norm_squared(), nearest, t)
         })
         .collect();
     order.sort_by(|x, y| x.0.total_cmp(&y.0));
     let half = 2.0 * (solid.radius + (seed - solid.middle).norm());
-    let mut polytope = Polytope::cube(half);
+    let mut cell = Cell::cube(half);
     let mut planes: Vec<Plane> = Vec::new();
     let mut last = 0;
     for (squared, nearest, t) in order {
-        let corners = t.map(|i| vertices[i]);
+        let corners = t.map(|i| vertices[i as usize]);
         let beyond = |plane: &Plane| corners.iter().all(|p| plane.height(p) >= 0.0);
         if planes.get(last).is_some_and(beyond) {
             continue;
@@ -80,11 +82,11 @@ pub(super) fn grow(solid: &Solid, seed: Vector3<f64>, to_ball: &Matrix3<f64>, sn
         if !(plane.offset > 1e-9 * solid.radius) || planes.len() >= MOST_PLANES {
             return None;
         }
-        polytope.cut(&plane);
+        cell.cut(&plane);
         planes.push(plane);
         last = planes.len() - 1;
     }
-    Some(Grown { seed, polytope, planes })
+    Some(Grown { seed, cell, planes })
 }
 
 /// The metric of a covariance: L with L^T L its inverse.

@@ -37,12 +37,14 @@
 
 use std::fmt;
 
+use super::Mesh;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use std::sync::Arc;
 
+mod cell;
 mod decompose;
 mod grow;
 mod piece;
-mod polytope;
 mod search;
 mod sigma;
 mod solid;
@@ -68,9 +70,16 @@ impl Pieces {
     /// # Errors
     /// [`SolidError`]: what is wrong, and where. A polygon soup has no inside, and no certificate.
     pub fn new(vertices: &[Point3<f64>], triangles: &[[u32; 3]], options: &BuildOptions) -> Result<Self, SolidError> {
-        let solid = solid::Solid::new(vertices, triangles)?;
-        let pieces = decompose::pieces(&solid, options);
-        let surface = travel::Surface::new(&solid, &pieces);
+        if !triangles.is_empty() {
+            solid::check_size(vertices)?;
+        }
+        Self::of_mesh(Arc::new(Mesh::new(vertices, triangles)?), options)
+    }
+
+    /// The same of a mesh.
+    pub(super) fn of_mesh(mesh: Arc<Mesh>, options: &BuildOptions) -> Result<Self, SolidError> {
+        let pieces = decompose::pieces(&solid::Solid::new(&mesh)?, options);
+        let surface = travel::Surface::new(mesh, &pieces);
         Ok(Pieces { pieces, surface, lever: None })
     }
 
@@ -132,7 +141,7 @@ impl Certifier {
     /// A lower bound of PD^g_DISP: of the largest displacement of a vertex of A in any motion of A out of B. `pose` places A: x -> R x + t in
     /// B's frame. At least 0; 0 also where the bodies are apart, nothing is known, or the pose is not finite.
     pub fn disp(&mut self, a: &Pieces, b: &Pieces, pose: &Isometry3<f64>, effort: Effort) -> f64 {
-        let mut search = search::Search::new(&mut self.memory, a, b, pose, search::Goal::Disp);
+        let mut search = search::PairSearch::new(&mut self.memory, a, b, pose, search::Goal::Disp);
         for level in levels(effort) {
             search.run(level);
         }
@@ -147,7 +156,7 @@ impl Certifier {
     /// out of B. 0 also where A was not [weighed](Pieces::weigh).
     pub fn sqrt_sigma(&mut self, a: &Pieces, b: &Pieces, pose: &Isometry3<f64>, effort: Effort) -> f64 {
         let Some(lever) = &a.lever else { return 0.0 };
-        let mut search = search::Search::new(&mut self.memory, a, b, pose, search::Goal::SqrtSigma(lever));
+        let mut search = search::PairSearch::new(&mut self.memory, a, b, pose, search::Goal::SqrtSigma(lever));
         let mut best: f64 = 0.0;
         for level in levels(effort) {
             search.run(level);

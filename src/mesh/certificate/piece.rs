@@ -4,7 +4,7 @@
 //! found with all corners of the piece strictly below and the triangle strictly above it, rounding included; the piece is first shrunk
 //! about its middle by as little as that takes. A piece that cannot be proved is not used.
 
-use super::polytope::Plane;
+use super::cell::Plane;
 use super::solid::Solid;
 use crate::qset::Ball;
 use crate::query::Options;

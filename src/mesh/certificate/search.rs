@@ -53,7 +53,7 @@ const HINTS: usize = 8;
 const ROUNDS: usize = 6;
 
 /// One query's search.
-pub(super) struct Search<'q> {
+pub(super) struct PairSearch<'q> {
     a: &'q Pieces,
     b: &'q Pieces,
     memory: &'q mut Memory,
@@ -77,7 +77,7 @@ pub(super) struct Search<'q> {
     log: Vec<Found>,
 }
 
-impl<'q> Search<'q> {
+impl<'q> PairSearch<'q> {
     pub fn new(memory: &'q mut Memory, a: &'q Pieces, b: &'q Pieces, pose: &Isometry3<f64>, goal: Goal<'q>) -> Self {
         let rotation = pose.rotation.to_rotation_matrix().into_inner();
         let translation = pose.translation.vector;
@@ -85,7 +85,7 @@ impl<'q> Search<'q> {
         let shapes = [vec![None; a.pieces.len()], vec![None; b.pieces.len()]];
         let seen = vec![false; a.pieces.len() * b.pieces.len()];
         let (hints, log) = (Vec::with_capacity(HINTS), Vec::new());
-        Search {
+        PairSearch {
             a,
             b,
             memory,

@@ -27,8 +27,8 @@
 //! combination f of the u_c. Multiplied by |f| <= 1, m becomes linear in f, k at most the convex (1 + |W (r x f)|^2)^(1/2) and l convex, so that
 //! the least m and the largest k and l of the three corners bound all of the triangle.
 
+use super::super::triangle::nearest_to_origin;
 use super::piece::Piece;
-use super::solid::nearest_to_origin;
 use crate::scalar::Real;
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::cmp::Ordering;

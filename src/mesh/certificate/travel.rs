@@ -10,35 +10,37 @@
 //! T is found by branch and bound over cubes, nearest to c first: s changes by no more than the way, so a cube with middle m and half
 //! diagonal h is empty when s(m) + h < r. The nearest cube that is left bounds T at any moment.
 
+use super::super::Mesh;
+use super::super::proximity::{Stack, winds_around};
 use super::piece::Piece;
-use super::solid::{Corners, Solid, nearest_to_origin};
-use nalgebra::Vector3;
+use super::solid::{corners, look_around};
+use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
-/// Triangles in a tree of boxes.
+/// A surface, and balls inside.
 #[derive(Clone, Debug)]
 pub(super) struct Surface {
-    triangles: Vec<Corners>,
-    /// Boxes of halves of halves, in order: the children of node k are 2 k + 1 and 2 k + 2.
-    boxes: Vec<[Vector3<f64>; 2]>,
+    mesh: Arc<Mesh>,
     /// Balls that are known to be inside.
     balls: Vec<(Vector3<f64>, f64)>,
     /// Largest norm of a vertex.
     reach: f64,
 }
 
-/// Triangles in a leaf.
-const LEAF: usize = 4;
+/// Memory of the questions about one point after the other.
+#[derive(Default)]
+struct Stacks {
+    near: Stack,
+    inside: Vec<(u32, u32)>,
+}
 
 impl Surface {
-    pub fn new(solid: &Solid, pieces: &[Piece]) -> Self {
+    pub fn new(mesh: Arc<Mesh>, pieces: &[Piece]) -> Self {
         let balls = pieces.iter().map(|piece| (piece.middle, piece.inradius)).collect();
-        let mut triangles: Vec<Corners> = solid.corners().collect();
-        let reach = triangles.iter().flatten().map(|p| p.norm()).fold(0.0, f64::max);
-        let mut boxes = Vec::new();
-        build(&mut triangles, 0, &mut boxes);
-        Surface { triangles, boxes, balls, reach }
+        let reach = corners(&mesh).flatten().map(|p| p.norm()).fold(0.0, f64::max);
+        Surface { mesh, balls, reach }
     }
 
     /// Largest norm of a vertex.
@@ -47,43 +49,19 @@ impl Surface {
     }
 
     /// The distance from the surface.
-    fn distance(&self, p: &Vector3<f64>) -> f64 {
+    fn distance(&self, p: &Vector3<f64>, stacks: &mut Stacks) -> f64 {
         let mut best = f64::MAX;
-        self.descend(0, &self.triangles, p, &mut best);
+        look_around(&self.mesh, p, &mut stacks.near, |_, q| {
+            best = best.min(q.norm_squared());
+            best
+        });
         best.sqrt()
     }
 
-    fn descend(&self, node: usize, triangles: &[Corners], p: &Vector3<f64>, best: &mut f64) {
-        if triangles.len() <= LEAF {
-            for t in triangles {
-                *best = best.min(nearest_to_origin(&t.map(|x| x - p)).norm_squared());
-            }
-            return;
-        }
-        let (left, right) = triangles.split_at(triangles.len() / 2);
-        let away = |node: usize| {
-            self.boxes.get(node).map_or(f64::MAX, |[low, high]| (p - p.sup(low).inf(high)).norm_squared())
-        };
-        let mut children = [(away(2 * node + 1), 2 * node + 1, left), (away(2 * node + 2), 2 * node + 2, right)];
-        if children[1].0 < children[0].0 {
-            children.swap(0, 1);
-        }
-        for (squared, child, part) in children {
-            if squared < *best {
-                self.descend(child, part, p, best);
-            }
-        }
-    }
-
     /// Is the point, which is not near the surface, inside? The winding number is asked last.
-    fn contains(&self, p: &Vector3<f64>) -> bool {
-        if self.boxes.first().is_some_and(|[low, high]| p.sup(low).inf(high) != *p) {
-            return false;
-        }
-        if self.balls.iter().any(|(center, radius)| (p - center).norm() < *radius) {
-            return true;
-        }
-        super::solid::contains(self.triangles.iter().copied(), p)
+    fn contains(&self, p: &Vector3<f64>, stacks: &mut Stacks) -> bool {
+        self.balls.iter().any(|(center, radius)| (p - center).norm() < *radius)
+            || winds_around(&self.mesh, &Point3::from(*p), &mut stacks.inside)
     }
 
     /// T is not less, for the ball of radius `ball` about `center`; looks at so many cubes within `range` of the centre. Given up, with
@@ -91,12 +69,13 @@ impl Surface {
     pub fn travel(&self, center: &Vector3<f64>, ball: f64, range: f64, enough: f64, cubes: usize) -> f64 {
         // The distances are off by a few roundoffs of the coordinates.
         let rounding = 1e-14 * (self.reach + center.norm() + range);
+        let mut stacks = Stacks::default();
         let mut queue = BinaryHeap::from([Cube { away: 0.0, middle: *center, half: range, inside: None }]);
         // What is not in the first cube is farther away than that.
         let result = |away: f64| (away.min(range) * (1.0 - 1e-12) - rounding).max(0.0);
         for _ in 0..cubes {
             let Some(cube) = queue.pop() else { return result(range) };
-            let distance = self.distance(&cube.middle);
+            let distance = self.distance(&cube.middle, &mut stacks);
             let slack = cube.half * 1.733 + rounding;
             if distance + slack < ball {
                 continue;
@@ -106,7 +85,7 @@ impl Surface {
             let mut inside = cube.inside;
             if slack - near < ball {
                 // Decided by the sign.
-                let sign = inside.unwrap_or_else(|| self.contains(&cube.middle));
+                let sign = inside.unwrap_or_else(|| self.contains(&cube.middle, &mut stacks));
                 if sign {
                     continue;
                 }
@@ -133,30 +112,14 @@ impl Surface {
 
     /// A lower bound of T at once: s changes by no more than the way. Negative where the ball is out of B.
     pub fn stuck(&self, center: &Vector3<f64>, ball: f64) -> f64 {
-        let distance = self.distance(center);
-        if distance < 1e-9 * self.reach || !self.contains(center) { ball - distance } else { ball + distance }
+        let mut stacks = Stacks::default();
+        let distance = self.distance(center, &mut stacks);
+        if distance < 1e-9 * self.reach || !self.contains(center, &mut stacks) {
+            ball - distance
+        } else {
+            ball + distance
+        }
     }
-}
-
-/// Sorts the triangles into a tree: halves along the longest side of the box around their corners.
-fn build(triangles: &mut [Corners], node: usize, boxes: &mut Vec<[Vector3<f64>; 2]>) {
-    let all = || triangles.iter().flatten();
-    let low = all().fold(Vector3::repeat(f64::MAX), |low, p| low.inf(p));
-    let high = all().fold(Vector3::repeat(f64::MIN), |high, p| high.sup(p));
-    if boxes.len() <= node {
-        boxes.resize(node + 1, [Vector3::zeros(); 2]);
-    }
-    boxes[node] = [low, high];
-    if triangles.len() <= LEAF {
-        return;
-    }
-    let axis = (high - low).imax();
-    let place = |t: &Corners| t[0][axis] + t[1][axis] + t[2][axis];
-    let middle = triangles.len() / 2;
-    triangles.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)));
-    let (left, right) = triangles.split_at_mut(middle);
-    build(left, 2 * node + 1, boxes);
-    build(right, 2 * node + 2, boxes);
 }
 
 /// A cube that may hold an end of the travel.

@@ -9,7 +9,7 @@
 
 use super::Scratch;
 use super::contact_space::Primitive;
-use super::search::Search;
+use super::search::PoseSearch;
 use super::step::{corrected_step, see_space};
 use crate::mesh::optimize::{Constraint, Twist};
 use nalgebra::Isometry3;
@@ -33,7 +33,7 @@ pub struct Branches {
 
 /// The best motion under the contacts.
 pub fn branched_step(
-    search: &mut Search,
+    search: &mut PoseSearch,
     pose: &Isometry3<f64>,
     trust: f64,
     margin: f64,
@@ -47,7 +47,7 @@ pub fn branched_step(
 }
 
 fn branch(
-    search: &mut Search,
+    search: &mut PoseSearch,
     branches: &mut Branches,
     pose: &Isometry3<f64>,
     trust: f64,
@@ -106,7 +106,7 @@ fn choose(scratch: &mut Scratch, chosen: &[Option<Primitive>], stands: &mut Vec<
 }
 
 /// The best motion under the noted primitives.
-fn attempt(search: &mut Search, pose: &Isometry3<f64>, trust: f64, clearance: f64) -> Option<Twist> {
+fn attempt(search: &mut PoseSearch, pose: &Isometry3<f64>, trust: f64, clearance: f64) -> Option<Twist> {
     let identity = Isometry3::identity();
     let Scratch { primitives, constraints, .. } = &mut *search.scratch;
     constraints.clear();
@@ -145,7 +145,7 @@ mod tests {
 
         let options = DepthOptions::default();
         for metric in [needle.disp() as &dyn crate::mesh::metric::Metric, needle.sigma().unwrap()] {
-            let mut search = Search::new(&mut solver, &start, metric, &options, None);
+            let mut search = PoseSearch::new(&mut solver, &start, metric, &options, None);
             let (trust, margin, clearance) = (0.1, 0.01, 1e-5);
             see_space(&mut search, &pose, trust, margin);
             let planes = attempt(&mut search, &pose, trust, clearance).unwrap().applied(&pose);

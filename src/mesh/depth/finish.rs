@@ -8,8 +8,8 @@
 //! * The pose is brought to where it touches.
 
 use super::Walk;
-use super::plan::Plan;
-use super::search::Search;
+use super::schedule::Schedule;
+use super::search::PoseSearch;
 use super::seeds::rays;
 use super::walk::{Bounds, ITERATIONS, follow, translate};
 
@@ -23,11 +23,11 @@ const WORTHWHILE: f64 = 5e-4;
 const LAST_GAIN: f64 = 1e-5;
 
 /// Improves the best pose as far as that goes.
-pub fn finish(search: &mut Search, plan: &Plan) {
-    refine(search, plan.gain);
+pub fn finish(search: &mut PoseSearch, schedule: &Schedule) {
+    refine(search, schedule.gain);
     if search.walk_kind == Walk::Linearised {
-        if hop(search, plan) {
-            refine(search, plan.gain);
+        if hop(search, schedule) {
+            refine(search, schedule.gain);
         }
         if is_worthwhile(search)
             && let Some(pose) = rays::without_turning(search)
@@ -39,12 +39,12 @@ pub fn finish(search: &mut Search, plan: &Plan) {
 }
 
 /// Whether the lower bound leaves room for a gain.
-fn is_worthwhile(search: &mut Search) -> bool {
+fn is_worthwhile(search: &mut PoseSearch) -> bool {
     search.upper.is_finite() && search.upper * (1.0 - WORTHWHILE) > search.lower && search.goes_on()
 }
 
 /// Walks on from the best pose.
-fn refine(search: &mut Search, gain: f64) {
+fn refine(search: &mut PoseSearch, gain: f64) {
     if !search.upper.is_finite() || !search.goes_on() {
         return;
     }
@@ -58,20 +58,20 @@ fn refine(search: &mut Search, gain: f64) {
 }
 
 /// Goes over to better valleys beside the best pose. Whether there was one.
-fn hop(search: &mut Search, plan: &Plan) -> bool {
+fn hop(search: &mut PoseSearch, schedule: &Schedule) -> bool {
     let before = search.upper;
     for _ in 0..HOPS {
         if !is_worthwhile(search) {
             break;
         }
-        let Some(pose) = rays::beside(search, plan.beside) else { break };
-        search.walk(&pose, plan.coarse, f64::INFINITY);
+        let Some(pose) = rays::beside(search, schedule.beside) else { break };
+        search.walk(&pose, schedule.coarse, f64::INFINITY);
     }
     search.upper < before
 }
 
 /// Brings the best pose to where it touches; nearer where that is all that is left between the bounds.
-fn polish(search: &mut Search) {
+fn polish(search: &mut PoseSearch) {
     for tolerance in [1e-6, 1e-10] {
         if search.upper.is_finite() && (tolerance == 1e-6 || search.is_closed()) {
             let pose = search.pose;

@@ -16,7 +16,7 @@
 //!   who may take them from stored [`ContactSamples`].
 //! * A *walk* (`walk`) goes from a seed along the boundary of the free space to where the metric is least.
 //! * `contact_space` knows what contacts say of motions near by; `sampling` and `branching` are the walk's other kinds of step.
-//! * `search` keeps the best pose and the budget; `plan` says how much is done, and when more is of no use; `finish` makes the best pose the answer.
+//! * `search` keeps the best pose and the budget; `schedule` says how much is done, and when more is of no use; `finish` makes the best pose the answer.
 //! * The warm query of a control loop is a [`DepthTracker`] (`tracker`).
 //!
 //! All lengths that the search chooses are in units of A's bounding box, so depths scale with the scene. Random directions come
@@ -40,9 +40,9 @@ mod budget;
 mod contact_space;
 mod finish;
 mod order;
-mod plan;
 mod random;
 mod sampling;
+mod schedule;
 mod search;
 mod seeds;
 mod step;
@@ -60,7 +60,7 @@ use branching::Branches;
 pub use budget::Budget;
 use contact_space::{ContactSpace, Primitive};
 use nalgebra::Isometry3;
-use search::Search;
+use search::PoseSearch;
 pub use seeds::samples::{ContactSamples, SamplesError};
 pub use tracker::DepthTracker;
 
@@ -243,6 +243,6 @@ impl<'m> DepthSolver<'m> {
         options: &DepthOptions,
         watch: Option<Watch>,
     ) -> MeshDepth {
-        Search::new(self, pose, metric, options, watch).run()
+        PoseSearch::new(self, pose, metric, options, watch).run()
     }
 }

@@ -1,8 +1,8 @@
 //! What comes after what in a query: the lower bound, seeds, walks from them, and the end.
 
 use super::finish::finish;
-use super::plan::Plan;
-use super::search::Search;
+use super::schedule::Schedule;
+use super::search::PoseSearch;
 use super::seeds::pushout;
 use super::seeds::rays::{self, Seed};
 use super::{MeshDepth, Outcome};
@@ -13,7 +13,7 @@ use nalgebra::Isometry3;
 /// Walks whose ends are nearer to the best pose than this fraction of its value have found it.
 const SAME: f64 = 0.05;
 
-impl Search<'_, '_, '_> {
+impl PoseSearch<'_, '_, '_> {
     pub fn run(mut self) -> MeshDepth {
         if !self.is_valid() {
             return self.answer(Outcome::Invalid);
@@ -24,34 +24,34 @@ impl Search<'_, '_, '_> {
             return MeshDepth { distance: Some(distance), ..self.answer(Outcome::Separated) };
         }
         self.lower = self.certify();
-        let plan = Plan::new(self.options.effort, self.a, self.b, self.metric.certificate());
+        let schedule = Schedule::new(self.options.effort, self.a, self.b, self.metric.certificate());
         self.leave_by_the_proof();
         let escape = rays::escape(&mut self);
         for pose in self.options.poses {
-            self.walk_from(pose, &plan);
+            self.walk_from(pose, &schedule);
         }
         if let Some(seed) = escape {
-            self.begin(&plan, seed);
+            self.begin(&schedule, seed);
         }
         // Dear, and of use where rays have missed a narrow passage.
         if self.options.push_out
             && self.may_be_much_less()
             && self.goes_on()
-            && let Some(seed) = pushout::push_out(&mut self, plan.work)
+            && let Some(seed) = pushout::push_out(&mut self, schedule.work)
         {
-            self.walk(&seed, plan.gain, f64::INFINITY);
+            self.walk(&seed, schedule.gain, f64::INFINITY);
         }
-        for round in 1..plan.rounds {
+        for round in 1..schedule.rounds {
             if !self.options.rays
                 || self.upper == f64::INFINITY
-                || !plan.patience.goes_on(round, self.lower, self.upper, self.returns())
+                || !schedule.patience.goes_on(round, self.lower, self.upper, self.returns())
             {
                 break;
             }
             let best = Seed { pose: self.pose, value: self.upper };
-            self.explore(&plan, round, &best);
+            self.explore(&schedule, round, &best);
         }
-        finish(&mut self, &plan);
+        finish(&mut self, &schedule);
         self.answer(self.outcome())
     }
 
@@ -65,30 +65,31 @@ impl Search<'_, '_, '_> {
     }
 
     /// The first round. Where translations and the lower bound say nearly the same, no ray that turns is cast.
-    fn begin(&mut self, plan: &Plan, escape: Seed) {
-        let Some(near) = plan.translations_suffice.filter(|_| self.options.rays && self.lower > 0.0) else {
-            return self.explore(plan, 0, &escape);
+    fn begin(&mut self, schedule: &Schedule, escape: Seed) {
+        let Some(near) = schedule.translations_suffice.filter(|_| self.options.rays && self.lower > 0.0) else {
+            return self.explore(schedule, 0, &escape);
         };
-        let translations = rays::Plan { screws: 0, seeds: 1, ..plan.rays };
+        let translations = rays::Fan { screws: 0, seeds: 1, ..schedule.rays };
         for seed in rays::cast(self, &translations, 0, &escape) {
-            self.walk(&seed.pose, plan.coarse, f64::INFINITY);
+            self.walk(&seed.pose, schedule.coarse, f64::INFINITY);
         }
         if self.upper.is_finite() && self.upper > near * self.lower {
             let best = Seed { pose: self.pose, value: self.upper };
-            self.explore(plan, 0, &best);
+            self.explore(schedule, 0, &best);
         }
     }
 
     /// Casts rays that end where they are not much worse than a seed that is known, and walks from what they find.
-    fn explore(&mut self, plan: &Plan, round: usize, known: &Seed) {
-        let seeds = if self.options.rays { rays::cast(self, &plan.rays, round, known) } else { vec![*known] };
+    fn explore(&mut self, schedule: &Schedule, round: usize, known: &Seed) {
+        let seeds = if self.options.rays { rays::cast(self, &schedule.rays, round, known) } else { vec![*known] };
         // Where a walk has begun or ended, none begins.
         let walked = self.scratch.walked.iter().flatten().any(|pose| *pose == known.pose);
         let seeds = seeds.iter().filter(|seed| !walked || seed.pose != known.pose);
         for (k, seed) in seeds.enumerate() {
-            self.fraction = (round as f64 + (k as f64 + 1.0) / (plan.rays.seeds as f64 + 1.0)) / plan.rounds as f64;
-            self.walk(&seed.pose, plan.coarse, self.upper * plan.hope);
-            if plan.patience.is_satisfied(self.lower, self.upper, self.returns()) {
+            self.fraction =
+                (round as f64 + (k as f64 + 1.0) / (schedule.rays.seeds as f64 + 1.0)) / schedule.rounds as f64;
+            self.walk(&seed.pose, schedule.coarse, self.upper * schedule.hope);
+            if schedule.patience.is_satisfied(self.lower, self.upper, self.returns()) {
                 break;
             }
         }
@@ -101,14 +102,15 @@ impl Search<'_, '_, '_> {
     }
 
     /// Walks from the caller's pose, or from where pushing out from there leads.
-    fn walk_from(&mut self, pose: &Isometry3<f64>, plan: &Plan) {
+    fn walk_from(&mut self, pose: &Isometry3<f64>, schedule: &Schedule) {
         if !is_usable(pose) || !self.goes_on() {
             return;
         }
         let pose = normalised(pose);
-        let seed = if self.pair.collides(&pose) { pushout::push_out_from(self, &pose, plan.work) } else { Some(pose) };
+        let seed =
+            if self.pair.collides(&pose) { pushout::push_out_from(self, &pose, schedule.work) } else { Some(pose) };
         if let Some(seed) = seed {
-            self.walk(&seed, plan.gain, f64::INFINITY);
+            self.walk(&seed, schedule.gain, f64::INFINITY);
         }
     }
 }

@@ -4,7 +4,7 @@
 //! and a random translation is projected onto the planes of up to three contacts, so that the sample touches there. Samples
 //! outside of the contact space, with its unions and intersections, are discarded; of the others, the one nearest to the start is the step.
 
-use super::search::Search;
+use super::search::PoseSearch;
 use super::step::see_space;
 use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -14,7 +14,7 @@ const SAMPLES: usize = 200;
 
 /// The best of some random motions under the contacts.
 pub fn sampled_step(
-    search: &mut Search,
+    search: &mut PoseSearch,
     pose: &Isometry3<f64>,
     trust: f64,
     margin: f64,
@@ -44,7 +44,7 @@ pub fn sampled_step(
 }
 
 /// Translates so that up to three random contacts have the gap that remains.
-fn project(search: &mut Search, twist: &mut Twist, pose: &Isometry3<f64>, back: &Isometry3<f64>, clearance: f64) {
+fn project(search: &mut PoseSearch, twist: &mut Twist, pose: &Isometry3<f64>, back: &Isometry3<f64>, clearance: f64) {
     let (planes, members) = (search.scratch.space.planes().len(), search.scratch.space.members().len());
     let count = planes + members;
     if count == 0 {

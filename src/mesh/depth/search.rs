@@ -8,7 +8,7 @@ use crate::mesh::pose::{is_usable, normalised};
 use crate::mesh::{Counters, Model, Pair, Screw};
 use nalgebra::{Isometry3, Translation3};
 
-pub(super) struct Search<'s, 'm, 'w> {
+pub(super) struct PoseSearch<'s, 'm, 'w> {
     pub pair: &'s mut Pair<'m>,
     pub scratch: &'s mut Scratch,
     certifier: &'s mut Certifier,
@@ -41,7 +41,7 @@ fn total(c: &Counters) -> u64 {
     c.collision + c.contact + c.distance
 }
 
-impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
+impl<'s, 'm, 'w> PoseSearch<'s, 'm, 'w> {
     pub fn new(
         solver: &'s mut DepthSolver<'m>,
         pose: &Isometry3<f64>,
@@ -52,7 +52,7 @@ impl<'s, 'm, 'w> Search<'s, 'm, 'w> {
         let before = solver.pair.counters();
         solver.scratch.walked.clear();
         let pose = normalised(pose);
-        Search {
+        PoseSearch {
             size: solver.a.mesh().diagonal(),
             pair: &mut solver.pair,
             scratch: &mut solver.scratch,

@@ -2,7 +2,7 @@
 
 use super::Scratch;
 use super::contact_space::Primitive;
-use super::search::Search;
+use super::search::PoseSearch;
 use crate::mesh::Contact;
 use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{StepOptions, Twist};
@@ -16,7 +16,7 @@ const CORRECTIONS: usize = 2;
 pub const CONTACTS: usize = 256;
 
 /// Looks for contacts at a pose, with those that a step may bring about.
-pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) {
+pub fn see(search: &mut PoseSearch, pose: &Isometry3<f64>, trust: f64, margin: f64) {
     let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
     search.pair.contacts_when_tilted(pose, margin, tilt, &mut search.scratch.contacts);
     limit(&mut search.scratch.contacts);
@@ -27,7 +27,7 @@ pub fn see(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) 
 }
 
 /// The same with what they say of unions. Returns the sine of the angle that A may turn by.
-pub fn see_space(search: &mut Search, pose: &Isometry3<f64>, trust: f64, margin: f64) -> f64 {
+pub fn see_space(search: &mut PoseSearch, pose: &Isometry3<f64>, trust: f64, margin: f64) -> f64 {
     see(search, pose, trust, margin);
     let tilt = (trust / search.metric.frame().radius).min(MOST_TILT);
     let meshes = (search.pair.a(), search.pair.b());
@@ -47,7 +47,7 @@ pub fn limit(contacts: &mut Vec<Contact>) {
 /// The best motion under the noted constraints. What the linearisation leaves out is looked up in the primitive constraints
 /// themselves, and the program is solved again with that much less room (a second-order correction).
 pub fn corrected_step(
-    search: &mut Search,
+    search: &mut PoseSearch,
     metric: &dyn Metric,
     pose: &Isometry3<f64>,
     trust: f64,

@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::random::Random;
-use super::search::Search;
+use super::search::PoseSearch;
 use super::seeds::{pushout, rays};
 use super::walk::{Bounds, LEAST, TRUST, follow};
 use super::{MeshDepth, Outcome};
@@ -95,7 +95,7 @@ impl Memory {
 
 /// A tick that has begun.
 pub(super) struct Tick<'t, 's, 'm, 'w> {
-    search: Search<'s, 'm, 'w>,
+    search: PoseSearch<'s, 'm, 'w>,
     memory: &'t mut Memory,
     budget: &'t Budget,
     /// Where the lower bound of this metric is remembered.
@@ -106,7 +106,7 @@ pub(super) struct Tick<'t, 's, 'm, 'w> {
 
 impl<'t, 's, 'm, 'w> Tick<'t, 's, 'm, 'w> {
     /// For a valid query.
-    pub fn new(search: Search<'s, 'm, 'w>, memory: &'t mut Memory, budget: &'t Budget) -> Self {
+    pub fn new(search: PoseSearch<'s, 'm, 'w>, memory: &'t mut Memory, budget: &'t Budget) -> Self {
         let slot = match search.metric.certificate() {
             Certificate::None => None,
             Certificate::Disp => Some(0),
@@ -242,7 +242,7 @@ impl<'t, 's, 'm, 'w> Tick<'t, 's, 'm, 'w> {
 }
 
 /// A new lower bound.
-fn certify(search: &mut Search) -> Option<Certified> {
+fn certify(search: &mut PoseSearch) -> Option<Certified> {
     search.lower = search.lower.max(search.certify()).min(search.upper);
     Some(Certified { kind: search.metric.certificate(), at: search.start, lower: search.lower })
 }
@@ -275,7 +275,7 @@ fn remember(known: &mut Vec<Known>, new: Known, metric: &dyn Metric, start: &Iso
 }
 
 /// Walks from a remembered pose, the `rank`-th by its distance, and remembers where that leads.
-fn refine(search: &mut Search, known: &mut Vec<Known>, rank: usize, motion: f64, steps: usize) {
+fn refine(search: &mut PoseSearch, known: &mut Vec<Known>, rank: usize, motion: f64, steps: usize) {
     let (metric, start, size) = (search.metric, search.start, search.size);
     known.sort_by(|x, y| search.distance(&x.pose).total_cmp(&search.distance(&y.pose)));
     let Some(from) = known.get(rank).copied() else { return };
@@ -290,7 +290,7 @@ fn refine(search: &mut Search, known: &mut Vec<Known>, rank: usize, motion: f64,
 }
 
 /// Towards the query's pose until it touches, roughly.
-fn approach(search: &mut Search, free: &Isometry3<f64>) -> Isometry3<f64> {
+fn approach(search: &mut PoseSearch, free: &Isometry3<f64>) -> Isometry3<f64> {
     let screw = Screw::new(free, &search.start);
     let (mut s, mut colliding) = (0.0, 1.0);
     for _ in 0..BISECTIONS {
@@ -308,7 +308,7 @@ fn approach(search: &mut Search, free: &Isometry3<f64>) -> Isometry3<f64> {
 }
 
 /// A random pose that is a little nearer than the best.
-fn probe(search: &Search, random: &mut Random) -> Isometry3<f64> {
+fn probe(search: &PoseSearch, random: &mut Random) -> Isometry3<f64> {
     let frame = search.metric.frame();
     let turn = random.signed().max(0.0);
     let twist = Twist {

@@ -23,7 +23,7 @@
 use std::fmt;
 
 use super::budget::Budget;
-use super::search::Search;
+use super::search::PoseSearch;
 use super::tick::{Memory, Tick};
 use super::{DepthOptions, DepthSolver, MeshDepth, Outcome, Progress};
 use crate::mesh::Model;
@@ -111,7 +111,7 @@ impl<'m> DepthTracker<'m> {
             ..DepthOptions::default()
         };
         let mut watch = |_: &Progress| late.is_some_and(|late| late());
-        let search = Search::new(&mut self.solver, pose, metric, &options, Some(&mut watch));
+        let search = PoseSearch::new(&mut self.solver, pose, metric, &options, Some(&mut watch));
         if !search.is_valid() {
             return search.answer(Outcome::Invalid);
         }

@@ -18,7 +18,7 @@
 
 use super::branching::branched_step;
 use super::sampling::sampled_step;
-use super::search::Search;
+use super::search::PoseSearch;
 use super::step::{corrected_step, see};
 use super::translation::Translation;
 use super::{Scratch, Walk};
@@ -54,7 +54,7 @@ enum Freedom {
 }
 
 /// Walks from a free pose, and offers where it ends. Returns that pose.
-pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
+pub fn walk(search: &mut PoseSearch, from: &Isometry3<f64>, bounds: &Bounds) -> Isometry3<f64> {
     let mut pose = search.slide(from, 0.2 * MARGIN * search.size);
     if from.rotation == search.start.rotation && search.walk_kind == Walk::Linearised {
         let bounds = Bounds { gain: TRANSLATION_GAIN, ..*bounds };
@@ -64,7 +64,7 @@ pub fn walk(search: &mut Search, from: &Isometry3<f64>, bounds: &Bounds) -> Isom
 }
 
 /// Walks from a free pose without turning, by linearised steps, and offers where it ends.
-pub fn translate(search: &mut Search, from: &Isometry3<f64>, gain: f64) {
+pub fn translate(search: &mut PoseSearch, from: &Isometry3<f64>, gain: f64) {
     let pose = search.slide(from, 0.2 * MARGIN * search.size);
     let bounds = Bounds { gain, hopeless: f64::INFINITY };
     advance(search, &pose, TRUST * search.size, ITERATIONS, Freedom::Translation, &bounds);
@@ -73,7 +73,7 @@ pub fn translate(search: &mut Search, from: &Isometry3<f64>, gain: f64) {
 /// Walks from a free pose near the boundary, with a first trust region and so many steps, and offers where it ends. Returns that pose, and
 /// the trust region there.
 pub fn follow(
-    search: &mut Search,
+    search: &mut PoseSearch,
     from: &Isometry3<f64>,
     trust: f64,
     steps: usize,
@@ -84,7 +84,7 @@ pub fn follow(
 }
 
 fn advance(
-    search: &mut Search,
+    search: &mut PoseSearch,
     from: &Isometry3<f64>,
     trust: f64,
     steps: usize,
@@ -132,7 +132,7 @@ fn advance(
 
 /// One step: the next pose, the length of the full step, and the fraction of it that was free.
 fn step(
-    search: &mut Search,
+    search: &mut PoseSearch,
     pose: &Isometry3<f64>,
     value: f64,
     trust: f64,
@@ -162,7 +162,7 @@ fn step(
 
 /// The best motion under the contacts, each as the plane across its gap.
 fn linear_step(
-    search: &mut Search,
+    search: &mut PoseSearch,
     pose: &Isometry3<f64>,
     trust: f64,
     margin: f64,
@@ -185,7 +185,7 @@ fn linear_step(
     corrected_step(search, metric, pose, trust, clearance)
 }
 
-impl Search<'_, '_, '_> {
+impl PoseSearch<'_, '_, '_> {
     /// Walks from a free pose, and notes where that began and ended.
     pub fn walk(&mut self, from: &Isometry3<f64>, gain: f64, hopeless: f64) {
         if self.goes_on() {

@@ -163,7 +163,7 @@ where
             // y satisfies all, to rounding that must not make the program empty.
             rows.push(Row::new(factor.forward(&c.normal), (c.offset - c.normal.dot(&y)).min(0.0)));
         }
-        let program = Program { body, members: &members, here, size, factor, constraints: rows.len(), reference };
+        let program = StepProgram { body, members: &members, here, size, factor, constraints: rows.len(), reference };
         let Some(proposal) = best.proposed_by(&program, rows) else { return best };
         let Proposal { d, weights, fraction, .. } = proposal;
         y += d * fraction;
@@ -187,7 +187,7 @@ where
 
 impl Solution {
     /// The step that a program proposes, corrected for curvature where it is cut short; takes over its lower bound.
-    fn proposed_by<P>(&mut self, program: &Program<'_, P>, rows: &mut std::vec::Vec<Row>) -> Option<Proposal>
+    fn proposed_by<P>(&mut self, program: &StepProgram<'_, P>, rows: &mut std::vec::Vec<Row>) -> Option<Proposal>
     where
         P: Fn(&Field) -> (Vector3<f64>, f64),
     {
@@ -220,7 +220,7 @@ fn meet(members: &mut Vec<Member, MEMBERS>, r: Vector3<f64>) {
 }
 
 /// One quadratic program at a point y.
-struct Program<'a, P> {
+struct StepProgram<'a, P> {
     body: &'a Body<'a, P>,
     members: &'a [Member],
     /// The field of displacements at y.
@@ -246,7 +246,7 @@ struct Proposal {
     height: f64,
 }
 
-impl<P> Program<'_, P> {
+impl<P> StepProgram<'_, P> {
     /// Solves the program. With a `curved` step, the members' constraints have the quadratic term that they have at that step.
     fn propose(&self, rows: &mut std::vec::Vec<Row>, most: f64, curved: Option<&Vector6<f64>>) -> Option<Proposal> {
         let radius = self.body.radius;

@@ -20,7 +20,12 @@ const RAYS: [[f64; 3]; 6] = [
 
 /// Whether the point, not on the surface, is inside the solid. O(log n) in the mean; the stack is scratch memory.
 pub(super) fn is_inside(mesh: &Mesh, p: &Point3<f64>, stack: &mut Vec<(u32, u32)>) -> bool {
-    if !mesh.is_solid() || !mesh.is_in_bounds(p, 0.0) {
+    mesh.is_solid() && winds_around(mesh, p, stack)
+}
+
+/// Whether the winding number of a closed surface, solid or not, is positive at the point.
+pub(in crate::mesh) fn winds_around(mesh: &Mesh, p: &Point3<f64>, stack: &mut Vec<(u32, u32)>) -> bool {
+    if !mesh.is_in_bounds(p, 0.0) {
         return false;
     }
     for ray in RAYS {

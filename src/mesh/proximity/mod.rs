@@ -34,6 +34,8 @@ mod screw;
 
 pub use contact::Contact;
 pub use distance::Distance;
+pub(super) use inside::winds_around;
+pub(super) use project::{Stack, descend};
 pub use screw::{Impact, Screw, Stop};
 
 use super::Mesh;

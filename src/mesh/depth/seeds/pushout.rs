@@ -5,7 +5,7 @@
 //! nothing is seen though the bodies overlap, and is halved where a query would have too much to look at. A few steps lead to a free pose, if there is one near by, or
 //! to a value that says that this is no way out.
 
-use super::super::search::Search;
+use super::super::search::PoseSearch;
 use super::super::step::limit;
 use crate::mesh::metric::Metric;
 use crate::mesh::optimize::{Constraint, StepOptions};
@@ -27,13 +27,13 @@ const HOPE: f64 = 1.4;
 const TRUST: f64 = 0.2;
 
 /// A free pose from the query's.
-pub fn push_out(search: &mut Search, work: usize) -> Option<Isometry3<f64>> {
+pub fn push_out(search: &mut PoseSearch, work: usize) -> Option<Isometry3<f64>> {
     let start = search.start;
     push_out_from(search, &start, work)
 }
 
 /// A free pose from one that overlaps. `work` is how many pairs of triangles a query may look at.
-pub fn push_out_from(search: &mut Search, from: &Isometry3<f64>, work: usize) -> Option<Isometry3<f64>> {
+pub fn push_out_from(search: &mut PoseSearch, from: &Isometry3<f64>, work: usize) -> Option<Isometry3<f64>> {
     // The object norm's steps are a single quadratic program, and hardly worse a guide to another metric.
     let metric = search.sigma.map_or(search.metric, |sigma| sigma as &dyn Metric);
     let mut clearance = CLEARANCE * search.size;

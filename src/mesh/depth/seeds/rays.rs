@@ -6,13 +6,13 @@
 //! Where facets meet at flat angles one valley has neighbours a few degrees away that are better by a few parts in a thousand. Translations around the best
 //! pose's find the way over ([`beside`]).
 
-use super::super::search::Search;
+use super::super::search::PoseSearch;
 use crate::mesh::optimize::Twist;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// How many rays, and which of them become seeds.
 #[derive(Clone, Copy, Debug)]
-pub struct Plan {
+pub struct Fan {
     /// Translations, evenly spread; in further rounds half as many.
     pub translations: usize,
     /// Random screws.
@@ -43,7 +43,7 @@ pub struct Seed {
 
 /// Moves A out of B's box, along the axis that is nearest. There is always such a pose, so there always is an upper bound, but for
 /// coordinates at the end of what numbers can do.
-pub fn escape(search: &mut Search) -> Option<Seed> {
+pub fn escape(search: &mut PoseSearch) -> Option<Seed> {
     let (low_b, high_b) = search.pair.b().bounds();
     let (low, high) = search.pair.a().bounds();
     let turn = search.start.rotation.to_rotation_matrix();
@@ -68,23 +68,23 @@ pub fn escape(search: &mut Search) -> Option<Seed> {
 }
 
 /// Translations into all directions, then random screws. Returns the best and diverse of them and of a seed that is known.
-pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec<Seed> {
+pub fn cast(search: &mut PoseSearch, fan: &Fan, round: usize, known: &Seed) -> Vec<Seed> {
     let mut found = vec![*known];
     let mut best = known.value;
-    let mut shoot = |search: &mut Search, linear, angular| {
+    let mut shoot = |search: &mut PoseSearch, linear, angular| {
         if search.goes_on()
-            && let Some(seed) = ray(search, linear, angular, plan.worse * best)
+            && let Some(seed) = ray(search, linear, angular, fan.worse * best)
         {
             best = best.min(seed.value);
             found.push(seed);
         }
     };
     let turn = search.random.rotation();
-    let translations = if round == 0 { plan.translations } else { plan.translations / 2 };
+    let translations = if round == 0 { fan.translations } else { fan.translations / 2 };
     for k in 0..translations {
         shoot(search, turn * on_cap(k, translations, -1.0), Vector3::zeros());
     }
-    for _ in 0..plan.screws {
+    for _ in 0..fan.screws {
         let (linear, angular) = (search.random.direction(), search.random.direction());
         let share = search.random.signed().abs();
         shoot(search, linear * share, angular * (1.0 - share));
@@ -93,7 +93,7 @@ pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec
     let mut chosen: Vec<Seed> = Vec::new();
     for seed in found {
         let apart = |c: &Seed| search.metric.distance(&c.pose, &seed.pose) > DIVERSE * seed.value;
-        if chosen.len() < plan.seeds && chosen.iter().all(apart) {
+        if chosen.len() < fan.seeds && chosen.iter().all(apart) {
             chosen.push(seed);
         }
     }
@@ -101,7 +101,7 @@ pub fn cast(search: &mut Search, plan: &Plan, round: usize, known: &Seed) -> Vec
 }
 
 /// The last of so many translations around the best pose's, each of them better than those before; `None` if none is.
-pub fn beside(search: &mut Search, translations: usize) -> Option<Isometry3<f64>> {
+pub fn beside(search: &mut PoseSearch, translations: usize) -> Option<Isometry3<f64>> {
     let towards = best_translation(search)?;
     let turn = UnitQuaternion::rotation_between(&Vector3::z(), &towards)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
@@ -120,19 +120,19 @@ pub fn beside(search: &mut Search, translations: usize) -> Option<Isometry3<f64>
 }
 
 /// The translation into the direction of the best pose's, when it is hardly worse.
-pub fn without_turning(search: &mut Search) -> Option<Isometry3<f64>> {
+pub fn without_turning(search: &mut PoseSearch) -> Option<Isometry3<f64>> {
     let towards = best_translation(search)?;
     ray(search, towards, Vector3::zeros(), HARDLY_WORSE * search.upper).map(|seed| seed.pose)
 }
 
 /// The direction in which the best pose moves A's centre.
-fn best_translation(search: &Search) -> Option<Vector3<f64>> {
+fn best_translation(search: &PoseSearch) -> Option<Vector3<f64>> {
     let centre = search.metric.frame().centre;
     (search.pose * centre - search.start * centre).try_normalize(0.0)
 }
 
 /// Where the motion s (linear, angular / radius) becomes free, if it is at the value `most`.
-fn ray(search: &mut Search, linear: Vector3<f64>, angular: Vector3<f64>, most: f64) -> Option<Seed> {
+fn ray(search: &mut PoseSearch, linear: Vector3<f64>, angular: Vector3<f64>, most: f64) -> Option<Seed> {
     let (about, radius) = (search.start * search.metric.frame().centre, search.metric.frame().radius);
     let start = search.start;
     let at = |s: f64| Twist { linear: linear * s, angular: angular * (s / radius), about }.applied(&start);

@@ -19,8 +19,8 @@ use crate::mesh::Model;
 use crate::mesh::metric::Certificate;
 
 /// What a query of an effort does, for a pair of models and a kind of metric.
-pub struct Plan {
-    pub rays: rays::Plan,
+pub struct Schedule {
+    pub rays: rays::Fan,
     /// Translations come first, and are all there is when one walk from them brings the ratio of the bounds down to this. `None`: all
     /// rays at once.
     pub translations_suffice: Option<f64>,
@@ -73,12 +73,12 @@ const QUICK: f64 = 1e5;
 /// By this factor at most.
 const MOST_MORE: f64 = 6.0;
 
-impl Plan {
-    pub fn new(effort: Effort, a: &Model, b: &Model, kind: Certificate) -> Plan {
+impl Schedule {
+    pub fn new(effort: Effort, a: &Model, b: &Model, kind: Certificate) -> Schedule {
         let pairs = a.mesh().triangles().len() as f64 * b.mesh().triangles().len() as f64;
         let more = (QUICK / pairs).sqrt().sqrt().clamp(1.0, MOST_MORE);
         let times = |count: usize| (count as f64 * more) as usize;
-        let rays = |translations, screws, worse, seeds| rays::Plan {
+        let rays = |translations, screws, worse, seeds| rays::Fan {
             translations,
             screws: times(screws),
             worse,
@@ -95,7 +95,7 @@ impl Plan {
         let translations_suffice = disp.then_some(1.02);
         let beside = if disp { 16 } else { 0 };
         match effort {
-            Effort::Fast => Plan {
+            Effort::Fast => Schedule {
                 rays: rays(20, 12, 1.1, 2),
                 translations_suffice,
                 beside: 0,
@@ -106,7 +106,7 @@ impl Plan {
                 gain: 1e-3,
                 hope: 0.97,
             },
-            Effort::Default => Plan {
+            Effort::Default => Schedule {
                 rays: rays(32, 64, if disp { 1.2 } else { 1.3 }, 5),
                 translations_suffice,
                 beside,
@@ -117,7 +117,7 @@ impl Plan {
                 gain: 1e-4,
                 hope: if disp { 0.95 } else { 1.0 },
             },
-            Effort::Heavy => Plan {
+            Effort::Heavy => Schedule {
                 rays: rays(64, 128, 1.4, 10),
                 translations_suffice: None,
                 beside: 4 * beside,

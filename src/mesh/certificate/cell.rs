@@ -26,11 +26,11 @@ pub(super) struct Moments {
 }
 
 /// A convex polytope with the origin inside.
-pub(super) struct Polytope {
+pub(super) struct Cell {
     faces: Vec<Vec<Vector3<f64>>>,
 }
 
-impl Polytope {
+impl Cell {
     /// The cube of this half side.
     pub fn cube(half: f64) -> Self {
         let face = |axis: usize, side: f64| {
@@ -44,7 +44,7 @@ impl Polytope {
             };
             around.map(corner).to_vec()
         };
-        Polytope { faces: (0..3).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect() }
+        Cell { faces: (0..3).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect() }
     }
 
     /// Keeps what is below the plane; its offset is positive.
