@@ -1,5 +1,5 @@
 //! Arrows point down: no file of `src/` imports from a storey above its own, and no folder has a circle. The storeys are those that the essay in
-//! `lib.rs` draws.
+//! `lib.rs` draws. And nothing is too long to be read: no file, no function.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -137,4 +137,81 @@ fn no_folder_has_a_circle() {
         }
     }
     assert!(circles.is_empty(), "{circles:#?}");
+}
+
+/// Lines of a file without its tests, and of a function.
+const LONGEST_FILE: usize = 400;
+const LONGEST_FUNCTION: usize = 60;
+
+/// Files and functions that are longer, to be split: the list only gets shorter.
+const LONG: &[&str] = &[
+    "capi/src/f64/combine.rs",
+    "capi/src/f64/grasp/linearized.rs",
+    "capi/src/f64/plane.rs",
+    "capi/src/f64/points.rs",
+    "capi/src/f64/query.rs",
+    "capi/src/f64/unit_sets.rs",
+    "capi/src/generic.rs",
+    "src/grasp/finger/face.rs find_inside",
+    "src/grasp/finger/program.rs step",
+    "src/grasp/finger/tuples.rs solve",
+    "src/grasp/gradient/mod.rs gradient",
+    "src/grasp/linearized.rs",
+    "src/query/mod.rs",
+    "src/solver/depth/mod.rs",
+    "src/solver/depth/sectors.rs search_sectors",
+    "src/support/shapes.rs",
+];
+
+/// The lines of a file without its tests.
+fn code(file: &Path) -> Vec<String> {
+    let text = fs::read_to_string(file).unwrap();
+    text.split("#[cfg(test)]\nmod ").next().unwrap().lines().map(str::to_string).collect()
+}
+
+/// The name of the function that begins in a line, and what the line begins with.
+fn function(line: &str) -> Option<(&str, &str)> {
+    let (before, after) = line.split_once("fn ")?;
+    let rest = before.trim_start();
+    let words = ["pub", "pub(crate)", "pub(super)", "const", "unsafe", "extern", "\"C\""];
+    let plain =
+        rest.split_whitespace().all(|word| words.contains(&word) || word.starts_with("pub(in") || word.ends_with(')'));
+    let name = after.split(|c: char| c != '_' && !c.is_alphanumeric()).next()?;
+    (plain && !name.is_empty()).then_some((name, &before[..before.len() - rest.len()]))
+}
+
+/// The functions of a file with their numbers of lines, from `fn` to the brace that closes them; functions inside others are lines of those as well.
+fn functions(lines: &[String]) -> Vec<(String, usize)> {
+    let mut found = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let Some((name, indent)) = function(line) else { continue };
+        let closing = format!("{indent}}}");
+        let declared =
+            |line: &String| line.ends_with(';') && (*line == lines[start] || line.starts_with(&format!("{indent})")));
+        let end = lines[start..].iter().position(|line| declared(line) || *line == closing);
+        found.push((name.to_string(), end.map_or(1, |end| end + 1)));
+    }
+    found
+}
+
+#[test]
+fn nothing_is_too_long_to_be_read() {
+    let mut long = BTreeSet::new();
+    for folder in ["src", "capi/src"] {
+        for file in files(Path::new(folder)) {
+            let lines = code(&file);
+            if lines.len() > LONGEST_FILE {
+                long.insert(file.display().to_string());
+            }
+            if folder == "src" {
+                let functions = functions(&lines).into_iter().filter(|(_, length)| *length > LONGEST_FUNCTION);
+                long.extend(functions.map(|(name, _)| format!("{} {name}", file.display())));
+            }
+        }
+    }
+    let known: BTreeSet<String> = LONG.iter().map(|name| name.to_string()).collect();
+    let new: Vec<_> = long.difference(&known).collect();
+    assert!(new.is_empty(), "longer than {LONGEST_FILE} lines, or functions than {LONGEST_FUNCTION}: {new:#?}");
+    let done: Vec<_> = known.difference(&long).collect();
+    assert!(done.is_empty(), "no longer long, to be taken off the list: {done:#?}");
 }
