@@ -47,8 +47,8 @@ fn read(file: &PathBuf) -> Result<Vec<Grasp>, Box<dyn Error>> {
 }
 
 /// To 1e-3, where rounding allows that.
-fn options<T: Real>() -> Options<T, 6> {
-    Options { relative: T::of(1e-3), max_iterations: MOST, ..Options::default() }
+fn options<T: Real>() -> Options<'static, T, 6> {
+    Options { relative: T::of(1e-3), max_iterations: Some(MOST), ..Options::default() }
 }
 
 /// The questions that the file asks, measured where it means them.

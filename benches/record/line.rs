@@ -41,7 +41,7 @@ impl Record {
 
     /// An answer about d_Q: bracket, direction, its support point, and what the lower bound stands on.
     pub fn answer<T: Real, const N: usize>(&mut self, question: &str, answer: &Answer<T, N>) -> io::Result<()> {
-        let corners = answer.witness.corners.iter().flat_map(|corner| &corner.vertex.point);
+        let corners = answer.witness.corners().iter().flat_map(|corner| &corner.vertex.point);
         let numbers = [&answer.lower, &answer.upper, &answer.unit].into_iter();
         let numbers = numbers.chain(&answer.direction).chain(&answer.support).chain(corners);
         self.line(question, &(answer.outcome, answer.plan, answer.dimension), numbers)

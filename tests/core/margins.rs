@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use qdist::qset::UnitBox;
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Failure, Points, Sphere, Support};
 use qdist::{Body, Depth, Options, Outcome, Real, Vector, Workspace};
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 fn depth<T: Real>(a: &Body<'_, T>, b: &Body<'_, T>) -> Depth<T> {
     Workspace::<T, 3, 64, 128>::new().solver().depth(a, b, &Options::default())
@@ -141,7 +141,7 @@ struct Octahedron<T, const N: usize> {
     axes: [T; N],
     extent: T,
     error: Option<T>,
-    asked: Cell<u32>,
+    asked: AtomicU32,
 }
 
 impl<T: Real, const N: usize> Support<T, N> for Octahedron<T, N> {
@@ -174,7 +174,7 @@ fn octahedra<T: Real, const N: usize>(seed: u64, widest: f64) {
         let extent = T::of(10f64.powf(dice.range(0.5, if k % 2 == 0 { 8.0 } else { 20.0 })));
         // Every third states its error by itself: then the bracket may be wide, and nothing else.
         let error = (k % 3 == 2).then(|| T::of(10f64.powf(dice.range(-3.0, 15.0))));
-        let set = Octahedron { axes, extent, error, asked: Cell::new(0) };
+        let set = Octahedron { axes, extent, error, asked: AtomicU32::new(0) };
         let answer = memory.solver().solve(&set, &q, &Options::default());
         let (lower, upper) = (answer.lower.to_f64(), answer.upper.to_f64());
         assert!(lower <= truth * (1.0 + 1e-14) && truth * (1.0 - 1e-14) <= upper, "{truth} {lower} {upper}");
@@ -203,7 +203,7 @@ fn a_stated_extent_that_is_loose_costs_nothing() {
 #[test]
 fn a_body_with_a_loose_extent() {
     for extent in [1e3, 1e9, 1e15, 1e30] {
-        let set = Octahedron { axes: [1.0; 3], extent, error: None, asked: Cell::new(0) };
+        let set = Octahedron { axes: [1.0; 3], extent, error: None, asked: AtomicU32::new(0) };
         let cube = BoxShape::new(Vector::from([0.5; 3])).unwrap();
         let d = depth(&Body::at(&set, Vector::zeros()), &Body::at(&cube, Vector::from([1.25, 0.125, 0.0])));
         // The face of normal (1, 1, 0) / sqrt(2) is no face of the difference; along x it reaches 1.5.
