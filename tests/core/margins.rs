@@ -148,7 +148,7 @@ impl<T: Real, const N: usize> Support<T, N> for Octahedron<T, N> {
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
         let length = u.norm().to_f64();
         assert!((0.5..2.0).contains(&length), "asked along {u:?}");
-        self.asked.set(self.asked.get() + 1);
+        self.asked.fetch_add(1, Ordering::Relaxed);
         let heights: Vec<T> = (0..N).map(|i| u[i].abs() * self.axes[i]).collect();
         let far = (0..N).fold(0, |best, i| if heights[i] > heights[best] { i } else { best });
         let mut point = Vector::zeros();
@@ -181,7 +181,7 @@ fn octahedra<T: Real, const N: usize>(seed: u64, widest: f64) {
         let points = answer.witness.corners().iter().flat_map(|c| c.vertex.point.iter().chain(c.vertex.witness.iter()));
         let all = points.chain(answer.direction.iter()).chain(answer.support.iter()).chain([&answer.unit]);
         assert!(all.copied().all(|x| x.finite()) && answer.direction.norm() > T::of(0.5), "{:?}", answer.direction);
-        assert_eq!(answer.support_calls, set.asked.get());
+        assert_eq!(answer.support_calls, set.asked.load(Ordering::Relaxed));
         if error.is_none() {
             assert!(answer.outcome == Outcome::Converged && upper - lower < widest * truth, "{truth} {lower} {upper}");
         }
