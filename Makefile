@@ -20,7 +20,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg record record-compare clean
 all: lib
 
 lib:
@@ -165,6 +165,16 @@ bench-pdg:
 	@$(CXX) -std=c++17 -O3 -Wall -Wextra $(peer_includes) benches/pdg/fcl.cpp -lfcl -lccd -o $(out)/pdg_fcl
 	@echo "measuring depths of meshes; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --package qdist-benches --bench pdg -- $(if $(QUICK),--quick) --fcl $(abspath $(out))/pdg_fcl $(abspath $(OUT))
+
+record: OUT = out/record
+record:
+	$(need)
+	@echo "writing every answer to the last bit; the records go to $(OUT)"
+	@$(CARGO) run --quiet --release --locked --package qdist-benches --bin record -- $(if $(PART),--part $(PART)) $(abspath $(OUT))
+
+record-compare:
+	$(need)
+	@scripts/record_compare.sh $(A) $(B)
 
 test:
 	@scripts/test.sh

@@ -140,8 +140,8 @@ fn solve<T: Real>(solver: &mut Solver<'_, T, 3>, case: &Case, tolerances: (f64, 
     })
 }
 
-/// Large hulls with their graph, other shapes as they are.
-fn prepared<'a, T: Real>(
+/// Large hulls with their graph, other shapes as they are; `words` has [`graph_len`] of the points.
+pub fn prepared<'a, T: Real>(
     shape: &Shape,
     points: &'a [[T; 3]],
     words: &'a mut [u16],

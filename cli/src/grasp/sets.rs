@@ -10,13 +10,13 @@
 //! A contact contributes the wrenches of its own forces. Where joints have torque limits, all contacts of the finger are one contribution: they share the
 //! joints. (Under L1 the fingers then share one supply, the contacts of one finger do not.)
 
-use qdist::Vector;
 use qdist::grasp::{
     ActiveForces, ContactError, Contribution, Finger, ForceModel, GraspError, HandContact, Primitive, Subspace,
     WrenchFrame, WrenchSet, active_wrenches, default_tolerance, wrenches,
 };
 use qdist::nalgebra::SMatrix;
 use qdist::support::{Failure, Support};
+use qdist::{Real, Vector};
 
 use crate::Trouble;
 use crate::grasp::input::{Grasp, Set, Touch};
@@ -26,19 +26,21 @@ use crate::grasp::unit_sets::Q;
 const OUT_OF_SPAN: f64 = 1e-7;
 
 /// What contributes to a wrench set: a contact, or a finger whose joints have limits.
-pub enum Part {
-    Contact(Box<Primitive<f64>>),
-    Finger(Box<Finger<f64>>),
+pub enum Part<T = f64> {
+    Contact(Box<Primitive<T>>),
+    Finger(Box<Finger<T>>),
 }
 
-impl Part {
-    fn support_set(&self) -> &dyn Support<f64, 6> {
+impl<T: Real> Part<T> {
+    fn support_set(&self) -> &dyn Support<T, 6> {
         match self {
             Self::Contact(primitive) => &**primitive,
             Self::Finger(finger) => &**finger,
         }
     }
+}
 
+impl Part {
     /// h(u) of the part with {0}.
     pub fn value(&self, u: &Vector<f64, 6>) -> f64 {
         match self {
@@ -48,32 +50,32 @@ impl Part {
     }
 }
 
-impl Support<f64, 6> for Part {
-    fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+impl<T: Real> Support<T, 6> for Part<T> {
+    fn support(&self, u: &Vector<T, 6>) -> Result<Vector<T, 6>, Failure> {
         self.support_set().support(u)
     }
-    fn extent(&self) -> f64 {
+    fn extent(&self) -> T {
         self.support_set().extent()
     }
-    fn error(&self) -> f64 {
+    fn error(&self) -> T {
         self.support_set().error()
     }
-    fn errors(&self) -> Vector<f64, 6> {
+    fn errors(&self) -> Vector<T, 6> {
         self.support_set().errors()
     }
-    fn extents(&self) -> Vector<f64, 6> {
+    fn extents(&self) -> Vector<T, 6> {
         self.support_set().extents()
     }
 }
 
-impl Contribution<f64> for Part {
-    fn reach(&self, u: &Vector<f64, 6>, floor: f64) -> Result<Option<(f64, Vector<f64, 6>)>, Failure> {
+impl<T: Real> Contribution<T> for Part<T> {
+    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         match self {
             Self::Contact(primitive) => primitive.reach(u, floor),
             Self::Finger(finger) => finger.reach(u, floor),
         }
     }
-    fn is_mirror_of(&self, other: &Self, signs: &Vector<f64, 6>) -> bool {
+    fn is_mirror_of(&self, other: &Self, signs: &Vector<T, 6>) -> bool {
         match (self, other) {
             (Self::Contact(own), Self::Contact(other)) => own.is_mirror_of(other, signs),
             _ => false,
@@ -160,13 +162,14 @@ struct Group {
 }
 
 /// The contacts of a finger whose joints have limits, and these.
-struct Limited {
-    contacts: Vec<usize>,
-    limits: Vec<f64>,
+pub struct Limited {
+    pub contacts: Vec<usize>,
+    pub limits: Vec<f64>,
 }
 
 impl Limited {
-    fn all(touches: &[Touch]) -> Result<Vec<Self>, Trouble> {
+    /// Those of a grasp. The trouble names the contact.
+    pub fn all(touches: &[Touch]) -> Result<Vec<Self>, Trouble> {
         let mut all: Vec<Self> = Vec::new();
         for (i, touch) in touches.iter().enumerate() {
             let Some(limits) = &touch.limits else { continue };
