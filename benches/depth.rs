@@ -22,11 +22,11 @@ fn main() {
     let mut solver = memory.solver();
     let mut families: BTreeMap<String, Vec<(f64, u32, u32)>> = BTreeMap::new();
     for file in files {
-        for case in common::parse(&std::fs::read_to_string(&file).expect(&file)) {
-            let points: Vec<_> = case.bodies.iter().map(|b| common::points::<f64>(&b.shape)).collect();
-            let a = common::shape(&case.bodies[0].shape, &points[0]);
-            let b = common::shape(&case.bodies[1].shape, &points[1]);
-            let (a, b) = (common::body(&case.bodies[0], &*a), common::body(&case.bodies[1], &*b));
+        for case in common::cases::parse(&std::fs::read_to_string(&file).expect(&file)).unwrap() {
+            let points: Vec<_> = case.bodies.iter().map(|b| b.shape.points::<f64>()).collect();
+            let a = case.bodies[0].shape.build(&points[0]).unwrap();
+            let b = case.bodies[1].shape.build(&points[1]).unwrap();
+            let (a, b) = (case.bodies[0].body(&*a).unwrap(), case.bodies[1].body(&*b).unwrap());
             let options = Options { relative: 1e-6, absolute: 1e-12 * case.size, ..Options::default() };
             let depth = solver.depth(&a, &b, &options);
             let batch = || {

@@ -4,7 +4,7 @@
 //! Every direction u bounds the depth from above: depth <= h_A(u) + h_B(-u). So a lower bound of the crate must not
 //! exceed that for any u, and its upper bound must not be below it for the direction that it reports.
 
-use super::BodyText;
+use super::cases::Placed;
 use super::dd::{Dd, V3, dot, norm, scale, v3};
 use super::dice::Dice;
 
@@ -24,7 +24,7 @@ fn shape_value(kind: &str, n: &[f64], u: &V3) -> Dd {
 }
 
 /// The radius of the ball term, which a matrix that is not quite orthonormal leaves alone.
-fn ball_term(body: &BodyText) -> f64 {
+fn ball_term(body: &Placed) -> f64 {
     match body.shape.kind.as_str() {
         "sphere" | "capsule" => body.shape.numbers[0],
         _ => 0.0,
@@ -32,7 +32,7 @@ fn ball_term(body: &BodyText) -> f64 {
 }
 
 /// h of the placed body: the matrix as it is given, the ball term a ball.
-pub fn body_value(body: &BodyText, u: &V3) -> Dd {
+pub fn body_value(body: &Placed, u: &V3) -> Dd {
     let r = &body.rotation;
     let local: V3 = std::array::from_fn(|j| (0..3).fold(Dd::ZERO, |s, i| s + Dd::new(r[3 * i + j]) * u[i]));
     let ball = Dd::new(ball_term(body));
@@ -41,13 +41,13 @@ pub fn body_value(body: &BodyText, u: &V3) -> Dd {
 }
 
 /// (h_A(u) + h_B(-u)) / |u|.
-pub fn pair_value(a: &BodyText, b: &BodyText, u: &V3) -> Dd {
+pub fn pair_value(a: &Placed, b: &Placed, u: &V3) -> Dd {
     (body_value(a, u) + body_value(b, &scale(u, Dd::new(-1.0)))) / norm(u)
 }
 
 /// The same in `f64`, to steer a search. Moved so that large positions cancel.
-fn rough(a: &BodyText, b: &BodyText, u: &[f64; 3]) -> f64 {
-    let value = |body: &BodyText, s: f64| {
+fn rough(a: &Placed, b: &Placed, u: &[f64; 3]) -> f64 {
+    let value = |body: &Placed, s: f64| {
         let (r, n) = (&body.rotation, &body.shape.numbers);
         let l: [f64; 3] = std::array::from_fn(|j| s * (r[j] * u[0] + r[3 + j] * u[1] + r[6 + j] * u[2]));
         let across = l[0].hypot(l[1]);
@@ -67,7 +67,7 @@ fn rough(a: &BodyText, b: &BodyText, u: &[f64; 3]) -> f64 {
 
 /// An upper bound of the depth by search: random directions and `first`, the best refined by shrinking random
 /// steps; each value is exact, whatever the search misses.
-pub fn searched_upper(a: &BodyText, b: &BodyText, first: Option<[f64; 3]>, tries: usize, dice: &mut Dice) -> Dd {
+pub fn searched_upper(a: &Placed, b: &Placed, first: Option<[f64; 3]>, tries: usize, dice: &mut Dice) -> Dd {
     let mut best = (f64::MAX, [1.0, 0.0, 0.0]);
     let axes = (0..3).flat_map(|i| {
         [1.0, -1.0].map(|s| {
@@ -106,7 +106,7 @@ pub fn searched_upper(a: &BodyText, b: &BodyText, first: Option<[f64; 3]>, tries
 }
 
 /// How far `p` (world) is outside the placed body, in its own frame; negative inside (then only roughly a distance).
-pub fn outside(body: &BodyText, p: [f64; 3]) -> f64 {
+pub fn outside(body: &Placed, p: [f64; 3]) -> f64 {
     let (r, t, n) = (&body.rotation, &body.translation, &body.shape.numbers);
     let w: [f64; 3] = std::array::from_fn(|i| p[i] - t[i]);
     let l: [f64; 3] = std::array::from_fn(|j| r[j] * w[0] + r[3 + j] * w[1] + r[6 + j] * w[2]);

@@ -4,22 +4,22 @@
 
 use crate::common;
 
+use common::cases::{Placed, Shape};
 use common::dd::{BLUR, Dd, v3};
 use common::dice::Dice;
 use common::exact::{pair_value, searched_upper};
 use common::memory::{Memory, Seen, broken_promise};
-use common::{BodyText, ShapeText};
 use nalgebra::{Rotation3, Unit, Vector3};
 use qdist::support::{Failure, Support, Symmetry};
 use qdist::{Body, Depth, Options, Outcome, Real, Vector};
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
-fn body(kind: &str, numbers: &[f64], rotation: [f64; 9], translation: [f64; 3]) -> BodyText {
-    BodyText { shape: ShapeText { kind: kind.to_string(), numbers: numbers.to_vec() }, rotation, translation }
+fn body(kind: &str, numbers: &[f64], rotation: [f64; 9], translation: [f64; 3]) -> Placed {
+    Placed { shape: Shape { kind: kind.to_string(), numbers: numbers.to_vec() }, rotation, translation }
 }
 
-fn at(kind: &str, numbers: &[f64]) -> BodyText {
+fn at(kind: &str, numbers: &[f64]) -> Placed {
     body(kind, numbers, IDENTITY, [0.0; 3])
 }
 
@@ -33,24 +33,24 @@ fn rows(r: &Rotation3<f64>) -> [f64; 9] {
     std::array::from_fn(|i| r.matrix()[(i / 3, i % 3)])
 }
 
-fn depth<T: Real>(a: &BodyText, b: &BodyText, memory: &mut Memory, options: &Options<T, 3>) -> Depth<T> {
-    let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
-    let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
-    memory.solver::<T, 3>().depth(&common::body(a, &*sa), &common::body(b, &*sb), options)
+fn depth<T: Real>(a: &Placed, b: &Placed, memory: &mut Memory, options: &Options<T, 3>) -> Depth<T> {
+    let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    memory.solver::<T, 3>().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), options)
 }
 
 /// The bodies as `f32` sees them.
-fn single(body: &BodyText) -> BodyText {
+fn single(body: &Placed) -> Placed {
     let down = |x: &f64| f64::from(*x as f32);
-    BodyText {
-        shape: ShapeText { kind: body.shape.kind.clone(), numbers: body.shape.numbers.iter().map(down).collect() },
+    Placed {
+        shape: Shape { kind: body.shape.kind.clone(), numbers: body.shape.numbers.iter().map(down).collect() },
         rotation: body.rotation.map(|x| down(&x)),
         translation: body.translation.map(|x| down(&x)),
     }
 }
 
 /// All promises of an answer in the memory of README's table; what is broken, as text.
-fn broken<T: Real>(a: &BodyText, b: &BodyText, dice: &mut Dice) -> Result<Seen, String> {
+fn broken<T: Real>(a: &Placed, b: &Placed, dice: &mut Dice) -> Result<Seen, String> {
     let options = Options::<T, 3>::default();
     let mut memory = Memory::new::<T, 3>(64, 128);
     let r = depth::<T>(a, b, &mut memory, &options);
@@ -88,20 +88,20 @@ fn broken<T: Real>(a: &BodyText, b: &BodyText, dice: &mut Dice) -> Result<Seen, 
     Ok(seen)
 }
 
-fn converges(a: &BodyText, b: &BodyText, dice: &mut Dice) -> Seen {
+fn converges(a: &Placed, b: &Placed, dice: &mut Dice) -> Seen {
     let seen = broken::<f64>(a, b, dice).unwrap_or_else(|text| panic!("{text}\n{a:?}\n{b:?}"));
     assert_eq!(seen.outcome, Outcome::Converged, "{seen:?}\n{a:?}\n{b:?}");
     seen
 }
 
 /// Brackets and witnesses true in both scalars and both orders, and all of `f64` converged.
-fn all_converge(name: &str, pairs: impl Iterator<Item = (BodyText, BodyText)>) {
+fn all_converge(name: &str, pairs: impl Iterator<Item = (Placed, Placed)>) {
     converge_in(100, name, pairs);
 }
 
 /// Brackets and witnesses true in both scalars and both orders for all pairs, and `f64` converged for at least so many of a hundred. All exceptions
 /// are told before the test fails.
-fn converge_in(percent: usize, name: &str, pairs: impl Iterator<Item = (BodyText, BodyText)>) {
+fn converge_in(percent: usize, name: &str, pairs: impl Iterator<Item = (Placed, Placed)>) {
     let mut dice = Dice::new(99);
     let (mut count, mut worst, mut faults, mut open) = (0, 0, Vec::new(), 0);
     for (a, b) in pairs {
@@ -206,7 +206,7 @@ fn bodies_of_revolution_whose_axes_nearly_agree() {
 }
 
 /// A cylinder, a cone or a disc of radius about 0.1, and a point on its axis inside.
-fn small(dice: &mut Dice) -> (BodyText, f64) {
+fn small(dice: &mut Dice) -> (Placed, f64) {
     let (r, h) = (dice.range(0.05, 0.2), dice.range(0.1, 0.3));
     match dice.below(2) {
         0 => (at("cylinder", &[r, h]), dice.range(-0.5, 0.5) * h),
@@ -312,14 +312,14 @@ fn anyhow(dice: &mut Dice) -> Rotation3<f64> {
 }
 
 /// The body, turned and moved.
-fn placed(body: &BodyText, turn: &Rotation3<f64>, by: &Vector3<f64>) -> BodyText {
+fn placed(body: &Placed, turn: &Rotation3<f64>, by: &Vector3<f64>) -> Placed {
     let own = Rotation3::from_matrix_unchecked(nalgebra::Matrix3::from_row_slice(&body.rotation));
     let translation = (turn * Vector3::from(body.translation) + by).into();
-    BodyText { shape: body.shape.clone(), rotation: rows(&(turn * own)), translation }
+    Placed { shape: body.shape.clone(), rotation: rows(&(turn * own)), translation }
 }
 
 /// A polytope with an edge along z through the origin, or with one that begins there.
-fn edged(dice: &mut Dice, kind: u32, long: f64) -> BodyText {
+fn edged(dice: &mut Dice, kind: u32, long: f64) -> Placed {
     let (up, down) = (long * dice.range(0.3, 1.0), -long * dice.range(0.3, 1.0));
     let (azimuth, width) = (dice.range(0.0, 6.25), dice.range(0.1, 2.8));
     let mut side = |w: f64| {

@@ -5,9 +5,9 @@
 
 use crate::common;
 
+use common::cases::{Case, Placed};
 use common::dd::{BLUR, v3};
 use common::memory::{Seen, broken_promise};
-use common::{BodyText, Case};
 use qdist::{Depth, Options, Real, Workspace};
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ struct Report {
 }
 
 /// A bound of |x| over the placed shape, for the rounding of the input.
-fn reach(body: &BodyText) -> f64 {
+fn reach(body: &Placed) -> f64 {
     let n = &body.shape.numbers;
     let size = match body.shape.kind.as_str() {
         "hull" => n.chunks_exact(3).map(|p| (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt()).fold(0.0, f64::max),
@@ -37,7 +37,7 @@ fn reach(body: &BodyText) -> f64 {
     size + body.translation.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-fn rounded<T: Real>(body: &BodyText) -> BodyText {
+fn rounded<T: Real>(body: &Placed) -> Placed {
     let mut body = body.clone();
     body.shape.numbers.iter_mut().for_each(|x| *x = T::of(*x).to_f64());
     body.rotation = body.rotation.map(|x| T::of(x).to_f64());
@@ -46,9 +46,9 @@ fn rounded<T: Real>(body: &BodyText) -> BodyText {
 }
 
 fn run<T: Real>(case: &Case, options: &Options<T, 3>, memory: &mut Workspace<T, 3, VERTICES, FACETS>) -> Report {
-    let points: Vec<_> = case.bodies.iter().map(|b| common::points::<T>(&b.shape)).collect();
-    let shapes: Vec<_> = case.bodies.iter().zip(&points).map(|(b, p)| common::shape(&b.shape, p)).collect();
-    let (a, b) = (common::body(&case.bodies[0], &*shapes[0]), common::body(&case.bodies[1], &*shapes[1]));
+    let points: Vec<_> = case.bodies.iter().map(|b| b.shape.points::<T>()).collect();
+    let shapes: Vec<_> = case.bodies.iter().zip(&points).map(|(b, p)| b.shape.build(p).unwrap()).collect();
+    let (a, b) = (case.bodies[0].body(&*shapes[0]).unwrap(), case.bodies[1].body(&*shapes[1]).unwrap());
     let r: Depth<T> = memory.solver().depth(&a, &b, options);
     let seen = Seen::from(&r);
     let mut wrong = Vec::new();
@@ -86,7 +86,7 @@ fn run<T: Real>(case: &Case, options: &Options<T, 3>, memory: &mut Workspace<T, 
 }
 
 fn run_file<T: Real>(file: &Path) -> Vec<Report> {
-    let cases = common::parse(&std::fs::read_to_string(file).unwrap());
+    let cases = common::cases::parse(&std::fs::read_to_string(file).unwrap()).unwrap();
     assert!(!cases.is_empty(), "{file:?} is empty");
     let mut memory = Box::new(Workspace::<T, 3, VERTICES, FACETS>::new());
     let single = T::ROUNDOFF.to_f64() > 1e-10;

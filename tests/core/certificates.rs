@@ -9,11 +9,11 @@
 
 use crate::common;
 
+use common::cases::{Placed, Shape};
 use common::dd::{BLUR, Dd, dot, norm, v3};
 use common::dice::Dice;
 use common::exact::{outside, pair_value, searched_upper};
 use common::memory::{Memory, Seen, brisk, broken_promise};
-use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Points, Rigid, Support};
@@ -200,7 +200,7 @@ fn general_answers_prove_themselves_in_f32() {
 
 const KINDS: [&str; 7] = ["sphere", "box", "ellipsoid", "cylinder", "capsule", "cone", "hull"];
 
-fn random_body<T: Real>(kind: &str, dice: &mut Dice, by: [f64; 3]) -> BodyText {
+fn random_body<T: Real>(kind: &str, dice: &mut Dice, by: [f64; 3]) -> Placed {
     let numbers: Vec<f64> = match kind {
         "sphere" => vec![dice.range(0.3, 1.5)],
         "box" | "ellipsoid" => (0..3).map(|_| dice.range(0.3, 1.5)).collect(),
@@ -208,8 +208,8 @@ fn random_body<T: Real>(kind: &str, dice: &mut Dice, by: [f64; 3]) -> BodyText {
         _ => (0..2).map(|_| dice.range(0.3, 1.5)).collect(),
     };
     let rotation = dice.rotation::<3>();
-    BodyText {
-        shape: ShapeText { kind: kind.to_string(), numbers: numbers.into_iter().map(exact::<T>).collect() },
+    Placed {
+        shape: Shape { kind: kind.to_string(), numbers: numbers.into_iter().map(exact::<T>).collect() },
         rotation: std::array::from_fn(|k| exact::<T>(rotation[k / 3][k % 3])),
         translation: by.map(exact::<T>),
     }
@@ -228,12 +228,12 @@ fn bodies<T: Real>() {
                 let a = random_body::<T>(one, &mut dice, [0.5, 0.25, -1.0]);
                 let shift = std::array::from_fn(|i| a.translation[i] + by * direction[i]);
                 let b = random_body::<T>(other, &mut dice, shift);
-                let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
-                let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
+                let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+                let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
                 let options = brisk();
                 let mut memory = Memory::new::<T, 3>(256, 512);
                 let r: Depth<T> =
-                    memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
+                    memory.solver::<T, 3>().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
                 let seen = Seen::from(&r);
                 let mut complain =
                     |what: String| complaints.push(format!("{one} {other} {round}, u = {u:.0e}: {what}; {seen:?}"));
@@ -333,12 +333,12 @@ fn skewed<T: Real>() {
                         body.rotation[k] = exact::<T>(base + if axis { 0.0 } else { off * dice.signed() });
                     }
                 }
-                let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
-                let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
+                let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+                let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
                 let options = brisk();
                 let mut memory = Memory::new::<T, 3>(256, 512);
                 let r: Depth<T> =
-                    memory.solver::<T, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
+                    memory.solver::<T, 3>().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
                 let seen = Seen::from(&r);
                 let mut complain = |what: String| {
                     complaints.push(format!(

@@ -3,10 +3,10 @@
 
 use crate::common;
 
+use common::cases::{Placed, Shape};
 use common::dd::{BLUR, Dd, v3};
 use common::exact::pair_value;
 use common::memory::{Memory, Seen, brisk, broken_promise};
-use common::{BodyText, ShapeText};
 use nalgebra::SMatrix;
 use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
@@ -14,17 +14,17 @@ use qdist::{Options, Outcome, Real, Vector};
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
-fn body(kind: &str, numbers: &[f64], rotation: [f64; 9], translation: [f64; 3]) -> BodyText {
-    BodyText { shape: ShapeText { kind: kind.to_string(), numbers: numbers.to_vec() }, rotation, translation }
+fn body(kind: &str, numbers: &[f64], rotation: [f64; 9], translation: [f64; 3]) -> Placed {
+    Placed { shape: Shape { kind: kind.to_string(), numbers: numbers.to_vec() }, rotation, translation }
 }
 
 /// The bracket of a pair, which keeps all promises, and whose lower bound does not exceed what `directions` prove.
-fn pair<T: Real>(a: &BodyText, b: &BodyText, directions: &[[f64; 3]]) -> Seen {
-    let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
-    let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
+fn pair<T: Real>(a: &Placed, b: &Placed, directions: &[[f64; 3]]) -> Seen {
+    let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
     let options = brisk();
     let mut memory = Memory::new::<T, 3>(256, 512);
-    let r = memory.solver::<T, 3>().depth(&common::body(a, &*sa), &common::body(b, &*sb), &options);
+    let r = memory.solver::<T, 3>().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
     let seen = Seen::from(&r);
     assert_eq!(broken_promise(&seen, &options, 256, 512), None, "{r:?}");
     let size = a.shape.numbers.iter().chain(&b.shape.numbers).fold(0.0f64, |m, x| m.max(x.abs()));
@@ -143,12 +143,12 @@ fn needles_of_a_millionth_of_a_millionth_in_f32() {
     let turn = [0.0, -1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0];
     let b =
         body("cylinder", &[thin, long], turn, [1.5409070910519726e-14, -4.7029554729738354e-12, 4.710667619867159e-12]);
-    let (sa, sb) = (common::shape::<f32>(&a.shape, &[]), common::shape::<f32>(&b.shape, &[]));
+    let (sa, sb) = (a.shape.build::<f32>(&[]).unwrap(), b.shape.build::<f32>(&[]).unwrap());
     for limit in [0, 5, 33] {
         for (vertices, facets) in [(6, 6), (64, 128)] {
             let options = Options { max_iterations: limit, relative: 0.0, guess: Some(Vector::zeros()), ..brisk() };
             let mut memory = Memory::new::<f32, 3>(vertices, facets);
-            let r = memory.solver::<f32, 3>().depth(&common::body(&a, &*sa), &common::body(&b, &*sb), &options);
+            let r = memory.solver::<f32, 3>().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
             assert_eq!(broken_promise(&Seen::from(&r), &options, vertices, facets), None, "{r:?}");
             assert!(r.point_a.iter().chain(r.point_b.iter()).all(|x| x.is_finite()), "{r:?}");
         }

@@ -18,7 +18,8 @@ use qdist::nalgebra::{Matrix3, Vector3};
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};
 use qdist::{Body, Real};
 
-use crate::Trouble;
+/// What is wrong, in words. (The reader stands alone: the project's tests are made of it, too.)
+type Trouble = String;
 
 /// A shape with its numbers as they stand in the file.
 #[derive(Clone, Debug)]

@@ -23,12 +23,12 @@ use qdist::support::{
     BoxShape, Ellipsoid, Failure, HalfSpace, Join, Linear, Margin, Points, Rigid, Sphere, Sum, Support,
 };
 use qdist::{Body, Options, Outcome, Plan, Real, Vector};
+use qdist_fuzz::common::cases::{Placed, Shape};
 use qdist_fuzz::common::dd::{BLUR, Dd, V3, dot, norm, v3};
 use qdist_fuzz::common::dice::Dice;
 use qdist_fuzz::common::exact::{body_value, pair_value, searched_upper};
 use qdist_fuzz::common::hull::{ExactHull, signed_depth};
 use qdist_fuzz::common::memory::{Memory, Seen, broken_promise};
-use qdist_fuzz::common::{self, BodyText, ShapeText};
 use std::cell::Cell;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -205,7 +205,7 @@ fn random_points(dice: &mut Dice) -> Vec<f64> {
     points.iter().flat_map(|p| [p[0] * squash[0], p[1] * squash[1], p[2] * squash[2]]).collect()
 }
 
-fn random_shape(dice: &mut Dice, scale: f64) -> ShapeText {
+fn random_shape(dice: &mut Dice, scale: f64) -> Shape {
     let kind = dice.pick(&KINDS);
     let numbers: Vec<f64> = match kind {
         "sphere" => vec![random_size(dice)],
@@ -219,7 +219,7 @@ fn random_shape(dice: &mut Dice, scale: f64) -> ShapeText {
         "hull" => random_points(dice),
         _ => (0..2).map(|_| random_size(dice)).collect(),
     };
-    ShapeText { kind: kind.to_string(), numbers: numbers.into_iter().map(|x| x * scale).collect() }
+    Shape { kind: kind.to_string(), numbers: numbers.into_iter().map(|x| x * scale).collect() }
 }
 
 /// Row by row.
@@ -236,7 +236,7 @@ fn random_rotation(dice: &mut Dice) -> [f64; 9] {
     std::array::from_fn(|k| m[k / 3][k % 3])
 }
 
-fn rounded<T: Real>(body: &BodyText) -> BodyText {
+fn rounded<T: Real>(body: &Placed) -> Placed {
     let mut body = body.clone();
     body.shape.numbers.iter_mut().for_each(|x| *x = exact::<T>(*x));
     body.rotation = body.rotation.map(exact::<T>);
@@ -244,12 +244,12 @@ fn rounded<T: Real>(body: &BodyText) -> BodyText {
     body
 }
 
-fn reach(body: &BodyText) -> f64 {
+fn reach(body: &Placed) -> f64 {
     let size = body.shape.numbers.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     2.0 * size + body.translation.iter().map(|x| x.abs()).sum::<f64>()
 }
 
-fn hull_of(body: &BodyText) -> Option<ExactHull> {
+fn hull_of(body: &Placed) -> Option<ExactHull> {
     let n = &body.shape.numbers;
     let points: Vec<[f64; 3]> = match body.shape.kind.as_str() {
         "hull" if n.len() <= 48 => n.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
@@ -295,16 +295,16 @@ impl Ledger {
 }
 
 fn run_pair<T: Real>(
-    a: &BodyText,
-    b: &BodyText,
+    a: &Placed,
+    b: &Placed,
     dice: &mut Dice,
     runs: usize,
     ledger: &mut Ledger,
     known: &mut Option<f64>,
 ) -> Option<(f64, [f64; 3])> {
-    let (pa, pb) = (common::points::<T>(&a.shape), common::points::<T>(&b.shape));
-    let (sa, sb) = (common::shape(&a.shape, &pa), common::shape(&b.shape, &pb));
-    let (ba, bb) = (common::body(a, &*sa), common::body(b, &*sb));
+    let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    let (ba, bb) = (a.body(&*sa).unwrap(), b.body(&*sb).unwrap());
     let size = reach(a) + reach(b);
     let blur = Dd::new(BLUR * size);
     let mut last = None;
@@ -355,8 +355,8 @@ fn fuzz_pair(dice: &mut Dice) {
     let scale = if dice.chance(0.5) { 1.0 } else { dice.decade(-6.0, 6.0) };
     let other_scale = if dice.chance(0.8) { scale } else { scale * dice.decade(-4.0, 4.0) };
     let (rotation_a, rotation_b) = (random_rotation(dice), random_rotation(dice));
-    let mut a = BodyText { shape: random_shape(dice, scale), rotation: rotation_a, translation: [0.0; 3] };
-    let mut b = BodyText { shape: random_shape(dice, other_scale), rotation: rotation_b, translation: [0.0; 3] };
+    let mut a = Placed { shape: random_shape(dice, scale), rotation: rotation_a, translation: [0.0; 3] };
+    let mut b = Placed { shape: random_shape(dice, other_scale), rotation: rotation_b, translation: [0.0; 3] };
     if dice.chance(0.15) {
         b.shape = a.shape.clone();
     }
@@ -419,10 +419,10 @@ fn fuzz_pair(dice: &mut Dice) {
 }
 
 /// A body with a random shape, at most so far from the origin.
-fn random_body(dice: &mut Dice, scale: f64, far: f64) -> BodyText {
+fn random_body(dice: &mut Dice, scale: f64, far: f64) -> Placed {
     let rotation = random_rotation(dice);
     let translation = std::array::from_fn(|_| far * dice.signed());
-    BodyText { shape: random_shape(dice, scale), rotation, translation }
+    Placed { shape: random_shape(dice, scale), rotation, translation }
 }
 
 fn fuzz_half_space(dice: &mut Dice) {
@@ -443,14 +443,14 @@ fn fuzz_half_space(dice: &mut Dice) {
 }
 
 /// Against the definition: (h_A(-w) + c + w.s) / |w|, with w = S n.
-fn run_half_space<T: Real>(a: &BodyText, normal: [f64; 3], offset: f64, frame: &BodyText) {
+fn run_half_space<T: Real>(a: &Placed, normal: [f64; 3], offset: f64, frame: &Placed) {
     let (normal, offset) = (normal.map(exact::<T>), exact::<T>(offset));
-    let points = common::points::<T>(&a.shape);
-    let shape = common::shape(&a.shape, &points);
+    let points = a.shape.points::<T>();
+    let shape = a.shape.build(&points).unwrap();
     let ground = HalfSpace::<T, 3>::new(Vector::from(normal.map(T::of)), T::of(offset)).unwrap();
     let mut memory = Memory::least::<T, 3>();
     let options = Options::default();
-    let r = memory.solver::<T, 3>().depth(&common::body(a, &*shape), &common::body(frame, &ground), &options);
+    let r = memory.solver::<T, 3>().depth(&a.body(&*shape).unwrap(), &frame.body(&ground).unwrap(), &options);
     let seen = Seen::from(&r);
     if let Some(text) = broken_promise(&seen, &options, 0, 0) {
         find(&text, &format!("{r:?}"));
@@ -467,7 +467,7 @@ fn run_half_space<T: Real>(a: &BodyText, normal: [f64; 3], offset: f64, frame: &
 
 fn fuzz_join(dice: &mut Dice) {
     let scale = dice.decade(-6.0, 6.0);
-    let mut parts: [BodyText; 3] = std::array::from_fn(|_| random_body(dice, scale, 2.0 * scale));
+    let mut parts: [Placed; 3] = std::array::from_fn(|_| random_body(dice, scale, 2.0 * scale));
     let place = CURRENT.lock().unwrap().0.clone();
     now_at(format!("{place}\njoin of the first two, and the third: {parts:?}"));
     let mut ledger = Ledger::new();
@@ -479,10 +479,10 @@ fn fuzz_join(dice: &mut Dice) {
 }
 
 /// Against heights in double-double: the larger of the parts' along the normal, and along random directions.
-fn run_join<T: Real>(parts: &[BodyText; 3], dice: &mut Dice, ledger: &mut Ledger) {
+fn run_join<T: Real>(parts: &[Placed; 3], dice: &mut Dice, ledger: &mut Ledger) {
     let [a, b, other] = parts;
-    let points = parts.each_ref().map(|part| common::points::<T>(&part.shape));
-    let shapes = [0, 1, 2].map(|i| common::shape(&parts[i].shape, &points[i]));
+    let points = parts.each_ref().map(|part| part.shape.points::<T>());
+    let shapes = [0, 1, 2].map(|i| parts[i].shape.build(&points[i]).unwrap());
     let moved = |i: usize| {
         let rotation = SMatrix::<T, 3, 3>::from_row_slice(&parts[i].rotation.map(T::of));
         Rigid::new(&*shapes[i], rotation, Vector::from(parts[i].translation.map(T::of))).unwrap()
@@ -491,7 +491,7 @@ fn run_join<T: Real>(parts: &[BodyText; 3], dice: &mut Dice, ledger: &mut Ledger
     let mut memory = Memory::new::<T, 3>(256, 512);
     let options = Options { max_iterations: 300, ..Options::default() };
     let placed = Body::at(&join, Vector::zeros());
-    let r = memory.solver::<T, 3>().depth(&placed, &common::body(other, &*shapes[2]), &options);
+    let r = memory.solver::<T, 3>().depth(&placed, &other.body(&*shapes[2]).unwrap(), &options);
     let seen = Seen::from(&r);
     if let Some(text) = broken_promise(&seen, &options, 256, 512) {
         find(&text, &format!("{r:?}"));
