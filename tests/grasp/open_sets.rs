@@ -266,6 +266,12 @@ fn the_deadline_is_asked_between_vertices_that_are_the_origin() {
     let answer = memory.solver::<f64, 3>().solve(&cuboid, &q, &options);
     assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12));
     assert!(answer.outcome == Outcome::Interrupted || answer.outcome == Outcome::Converged);
+    // Memory without room for a polytope leaves it to the rays, which have nothing but zeros to look at.
+    asked.set(0);
+    let mut least = Memory::least::<f64, 3>();
+    let answer = least.solver::<f64, 3>().solve(&cuboid, &q, &options);
+    assert!(answer.lower <= 10.0 && 10.0 <= answer.upper * (1.0 + 1e-12));
+    assert_eq!(answer.outcome, Outcome::Interrupted);
     // Many of the same vertex.
     let many = vec![[0.1, 0.05, 0.0]; 1_000_000];
     let q = Vertices::new(&many).unwrap();
