@@ -93,6 +93,7 @@ impl<S> In<S> {
     }
 
     /// A list whose length the function fixes.
+    #[cfg(feature = "grasp")]
     #[inline(always)]
     pub(super) fn numbers<const K: usize>(&self) -> Check<[S; K]>
     where
@@ -103,6 +104,7 @@ impl<S> In<S> {
     }
 
     /// A struct of today's version.
+    #[cfg(feature = "grasp")]
     #[inline(always)]
     pub(super) fn current(&self) -> Check<&S>
     where
@@ -149,6 +151,7 @@ impl<S> Out<S> {
         self.0
     }
 
+    #[cfg(feature = "grasp")]
     pub(super) fn is_null(&self) -> bool {
         self.0.is_null()
     }
@@ -160,6 +163,7 @@ impl<S> Out<S> {
     }
 
     /// NULL or not misaligned.
+    #[cfg(feature = "grasp")]
     #[inline(always)]
     pub(super) fn optional(&self) -> Check {
         if self.0.is_null() { Ok(()) } else { self.checked() }
@@ -250,11 +254,13 @@ impl<S> Out<S> {
     }
 
     /// The same from an index on.
+    #[cfg(feature = "grasp")]
     pub(super) fn filled_from(&self, index: usize) -> In<S> {
         In(self.0.wrapping_add(index))
     }
 
     /// A struct in the struct, `offset` bytes from its beginning.
+    #[cfg(feature = "grasp")]
     pub(super) fn part<P>(&self, offset: usize) -> Check<Out<P>> {
         if offset + size_of::<P>() > size_of::<S>() {
             return Err(QDIST_ERROR_ARGUMENT);
