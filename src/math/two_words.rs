@@ -51,13 +51,14 @@ impl<T: Real, const N: usize> TwoWords<T, N> {
         image
     }
 
-    /// x.p, without the last rounding (and without the product of the low words, u^2 of the whole).
+    /// x.p, without the last rounding.
     pub(crate) fn dot(&self, p: &Self) -> Accumulator<T> {
         let mut sum = Accumulator::new(T::zero());
         for i in 0..N {
             sum.add_product(self.high[i], p.high[i]);
             sum.add_product(self.low[i], p.high[i]);
             sum.add_product(self.high[i], p.low[i]);
+            sum.add_product(self.low[i], p.low[i]);
         }
         sum
     }

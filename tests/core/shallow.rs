@@ -247,3 +247,48 @@ fn the_end_of_a_short_side() {
         assert!(low <= truth.upper && truth.lower <= high, "{number}: {found:?} for {truth:?}");
     }
 }
+
+/// Points of a small round body that are next to each other round to one vertex: its height is that of the point that was asked for, not of the one that is
+/// remembered for all. The sphere inside and the one around the ellipsoid bound the depth.
+#[test]
+fn round_bodies_that_are_small_for_their_place() {
+    let check =
+        |radius: f32, semi: [f32; 3], rotation: SMatrix<f32, 3, 3>, at: Vector3<f32>, options: &Options<'_, f32, 3>| {
+            let (sphere, egg) = (Sphere::<f32, 3>::new(radius).unwrap(), Ellipsoid::new(Vector3::from(semi)).unwrap());
+            let (a, b) = (Body::at(&sphere, Vector3::zeros()), Body::new(&egg, rotation, at).unwrap());
+            let depth = Workspace::<f32, 3, 64, 128>::new().solver().depth(&a, &b, options);
+            let between = f64::from(radius) - at.map(f64::from).norm();
+            // (The matrix is a rotation to some roundoffs.)
+            let [least, most] = [f32::min, f32::max].map(|pick| f64::from(semi.into_iter().reduce(pick).unwrap()));
+            let (least, most) = (between + least * (1.0 - 3e-7), between + most * (1.0 + 3e-7));
+            assert!(
+                f64::from(depth.lower) <= most && least <= f64::from(depth.upper),
+                "{depth:?} for [{least:e}, {most:e}], {semi:?}"
+            );
+        };
+    let rotation = SMatrix::<f32, 3, 3>::from_row_slice(&[
+        -0.11731569,
+        -0.9552166,
+        -0.27165842,
+        0.9683879,
+        -0.1706714,
+        0.18192358,
+        -0.22014076,
+        -0.24172822,
+        0.9450426,
+    ]);
+    let guess = Some(Vector3::new(-0.17600076, -0.5737401, -0.79990375));
+    let options = Options { relative: 1.0635787e-3, guess, ..Options::default() };
+    let at = Vector3::new(-0.12892392, 0.54900455, -0.649243);
+    check(0.859988, [0.00013625942, 0.00013625938, 0.00013625942], rotation, at, &options);
+    let mut rng = Dice::new(13);
+    for _ in 0..3000 {
+        let (radius, size) = (rng.range(0.3, 1.0), rng.decade(-5.0, -1.0));
+        let depth = size * rng.decade(-3.0, 0.0);
+        let at = (direction(&mut rng) * (radius + size - depth)).map(|x| x as f32);
+        let flat = 1.0 - rng.decade(-7.0, -4.0);
+        let options = Options { relative: rng.decade(-4.0, -2.0) as f32, ..Options::default() };
+        let (rotation, _) = pose(&mut rng);
+        check(radius as f32, [size as f32, (size * flat) as f32, size as f32], rotation, at, &options);
+    }
+}

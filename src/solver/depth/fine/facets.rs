@@ -15,6 +15,11 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         if !self.polytope.is_sound() {
             return None;
         }
+        let (polytope, scale) = (&self.polytope, self.query.scale());
+        self.recorder.freeze(|point| {
+            let vertex = point * scale;
+            polytope.facets().any(|facet| polytope.corners(facet).corners().iter().any(|c| c.vertex.point == vertex))
+        });
         let lowest = self.expand(found);
         if let Some(direction) = found.direction {
             // The query's best direction is the best in one word; the witness belongs to the one that is reported.

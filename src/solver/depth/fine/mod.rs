@@ -133,7 +133,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         let scale = self.query.scale();
         vertex.point /= scale;
         vertex.witness /= scale;
-        let point = self.recorder.behind(&vertex.point)?;
+        let point = self.recorder.latest()?;
         let upper = self.seen_along(TwoWords::from(normal)).upper(&point) * scale;
         if upper < found.bracket.upper {
             found.bracket.upper = upper;

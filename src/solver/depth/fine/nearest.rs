@@ -11,6 +11,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
     #[inline(never)]
     pub(super) fn by_nearest(&mut self, found: &mut Found<T, N>) -> Option<()> {
         let scale = self.query.scale();
+        self.recorder.freeze(|point| found.witness.corners().iter().any(|corner| corner.vertex.point == *point));
         for _ in 0..STEPS {
             let points = self.points(&found.witness)?;
             let nearest = combination(&found.witness, &points);

@@ -9,7 +9,7 @@ use crate::support::{Failure, Support};
 use heapless::Vec;
 
 /// Points that are remembered, the latest. (A query of two hulls makes some fifteen, one of curved bodies up to fifty, of which the last count.)
-const POINTS: usize = 40;
+const POINTS: usize = 44;
 
 /// The difference of two bodies, with points that are right to their own last digit, and remembered in two words.
 pub struct Recorder<'p, 'b, 'a, T: Real, const N: usize> {
@@ -17,6 +17,10 @@ pub struct Recorder<'p, 'b, 'a, T: Real, const N: usize> {
     points: RefCell<Vec<TwoWords<T, N>, POINTS>>,
     /// Where the next one goes when all places are taken.
     next: Cell<usize>,
+    /// What the last call has found. (Points that differ by less than a roundoff have one high word; the first is remembered for all of them.)
+    latest: Cell<Option<TwoWords<T, N>>>,
+    /// Is nothing forgotten any more? Bounds stand on the points then.
+    frozen: Cell<bool>,
     /// ρ' of A and B; 0 where there is no ρ.
     rolling: [T; 2],
 }
@@ -42,7 +46,14 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
             let off = skew(&body.rotation) + T::count(8) * T::ROUNDOFF;
             body.shape.rolling_radius() * (T::one() - T::count(8) * off)
         });
-        Recorder { pair, rolling, points: RefCell::new(Vec::new()), next: Cell::new(0) }
+        Recorder {
+            pair,
+            rolling,
+            points: RefCell::new(Vec::new()),
+            next: Cell::new(0),
+            latest: Cell::new(None),
+            frozen: Cell::new(false),
+        }
     }
 
     /// The point that is farthest along a direction, in two words, and the one of A, from its anchor.
@@ -56,9 +67,15 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
     }
 
     fn sample(&self, u: &Vector<T, N>, exhaustive: bool) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
-        let Some((point, on_a)) = self.ask(u) else { return self.pair.sample(u, exhaustive) };
-        if let Ok(mut points) = self.points.try_borrow_mut()
+        let Some((point, on_a)) = self.ask(u) else {
+            self.latest.set(None);
+            return self.pair.sample(u, exhaustive);
+        };
+        self.latest.set(Some(point));
+        if self.behind(&point.high).is_none()
+            && let Ok(mut points) = self.points.try_borrow_mut()
             && points.push(point).is_err()
+            && !self.frozen.get()
         {
             let next = self.next.get();
             if let Some(place) = points.get_mut(next) {
@@ -73,6 +90,19 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
     pub fn balls(&self) -> [T; 2] {
         let [a, b] = self.rolling;
         [self.pair.a.precise_ball(a), self.pair.b.precise_ball(b)]
+    }
+
+    /// What the last call has found.
+    pub fn latest(&self) -> Option<TwoWords<T, N>> {
+        self.latest.get()
+    }
+
+    /// Forgets all points but those behind these vertices, and none from now on.
+    pub fn freeze(&self, is_needed: impl Fn(&Vector<T, N>) -> bool) {
+        self.frozen.set(true);
+        if let Ok(mut points) = self.points.try_borrow_mut() {
+            points.retain(|point| is_needed(&point.high));
+        }
     }
 
     /// The point behind a vertex.
