@@ -388,6 +388,7 @@ impl<T: Real, const N: usize> Found<T, N> {
             point_b,
             dimension: N,
             support_calls,
+            failure: None,
             ..Depth::failed(Failure(0))
         }
     }
