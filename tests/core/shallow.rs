@@ -5,8 +5,8 @@ use crate::common;
 
 use common::dice::Dice;
 use nalgebra::{Rotation2, Rotation3, SMatrix, Unit, Vector2, Vector3};
-use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};
-use qdist::{Body, Options, Outcome, Workspace};
+use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Failure, Points, Sphere, Support};
+use qdist::{Body, Options, Outcome, TwoWords, Workspace};
 
 type Pose = (SMatrix<f32, 3, 3>, Vector3<f32>);
 
@@ -291,4 +291,79 @@ fn round_bodies_that_are_small_for_their_place() {
         let (rotation, _) = pose(&mut rng);
         check(radius as f32, [size as f32, (size * flat) as f32, size as f32], rotation, at, &options);
     }
+}
+
+/// A set that knows itself in two words along some directions only, and takes shortcuts that fall short.
+struct Forgetful<'a> {
+    whole: &'a (dyn Support<f32, 3> + Sync),
+    /// Along directions below this it tells nothing, or NaN.
+    below: f32,
+    nan: bool,
+    short: f32,
+}
+
+impl Support<f32, 3> for Forgetful<'_> {
+    fn support(&self, u: &Vector3<f32>) -> Result<Vector3<f32>, Failure> {
+        Ok(self.whole.support(u)? * self.short)
+    }
+    fn exhaustive(&self, u: &Vector3<f32>) -> Result<(Vector3<f32>, Vector3<f32>), Failure> {
+        self.whole.exhaustive(u)
+    }
+    fn has_shortcuts(&self) -> bool {
+        true
+    }
+    fn radius(&self) -> f32 {
+        self.whole.radius()
+    }
+    fn rolling_radius(&self) -> f32 {
+        self.whole.rolling_radius()
+    }
+    fn extent(&self) -> f32 {
+        self.whole.extent()
+    }
+    fn error(&self) -> f32 {
+        self.whole.error()
+    }
+    fn support_in_two_words(&self, u: &TwoWords<f32, 3>) -> Option<TwoWords<f32, 3>> {
+        let along = u.high.z / u.high.norm();
+        match along < self.below {
+            true if self.nan => Some(TwoWords::from(Vector3::repeat(f32::NAN))),
+            true => None,
+            false => self.whole.support_in_two_words(u),
+        }
+    }
+}
+
+/// Where a point is not told in two words after all, what one word has found stands: not a shortcut's point in its place, nor one of another core.
+#[test]
+fn bodies_that_do_not_always_tell_their_points_in_two_words() {
+    let mut rng = Dice::new(17);
+    let mut tried = 0;
+    for number in 0..400 {
+        let (first, second) = ([7, 0, 5][number % 3], [0, 7, 4, 6][number % 4]);
+        let (first, second) = (Numbers::random(&mut rng, first), Numbers::random(&mut rng, second));
+        let (at, mut bt) = (pose(&mut rng), pose(&mut rng));
+        let along = direction(&mut rng);
+        let (below, nan, short) = (rng.signed() as f32, number % 2 == 0, [1.0, 0.999][number / 2 % 2]);
+        first.both(1.0, |a, wide_a| {
+            second.both(1.0, |b, wide_b| {
+                let (mut near, mut far) = (0.0, 4.0);
+                for _ in 0..40 {
+                    let middle = (near + far) / 2.0;
+                    bt.1 = (along * middle).map(|x| x as f32);
+                    if exact(wide_a, &at, wide_b, &bt).0 > 2e-3 { near = middle } else { far = middle }
+                }
+                bt.1 = (along * near).map(|x| x as f32);
+                let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
+                let forgetful = Forgetful { whole: a, below, nan, short };
+                let (body_a, body_b) = (Body::new(&forgetful, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
+                let depth = Workspace::<f32, 3, 64, 128>::new().solver().depth(&body_a, &body_b, &Options::default());
+                let (low, high) = (f64::from(depth.lower), f64::from(depth.upper));
+                assert!(low <= upper && lower <= high, "{number}: [{low}, {high}] for [{lower}, {upper}], {depth:?}");
+                assert_eq!(depth.failure, None, "{number}: {depth:?}");
+                tried += 1;
+            });
+        });
+    }
+    assert_eq!(tried, 400);
 }

@@ -684,6 +684,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             return Some(Answer { support_calls: calls, ..answer.clone() });
         }
         let second = self.expand_ready(&mut query);
+        // (A body that does not tell a point in two words after all has not failed: the first answer stands.)
+        if recorder.is_some() && second.failure.is_some() {
+            return Some(Answer { support_calls: second.support_calls, ..answer.clone() });
+        }
         let second = match &recorder {
             Some(recorder) if is_shallow(&second) => Fine::new(&mut self.polytope, &mut query, recorder).refine(second),
             _ => second,
@@ -741,8 +745,13 @@ impl<T: Real, const N: usize> Depth<T, N> {
     }
 
     fn failed(failure: Failure) -> Self {
+        Depth { outcome: Outcome::SupportFailed, failure: Some(failure), ..Depth::unknown() }
+    }
+
+    /// Nothing is known.
+    fn unknown() -> Self {
         Depth {
-            outcome: Outcome::SupportFailed,
+            outcome: Outcome::Interrupted,
             lower: -T::HUGE,
             upper: T::HUGE,
             normal: Vector::zeros(),
@@ -753,7 +762,7 @@ impl<T: Real, const N: usize> Depth<T, N> {
             support_calls: 0,
             vertices: 0,
             facets: 0,
-            failure: Some(failure),
+            failure: None,
         }
     }
 }

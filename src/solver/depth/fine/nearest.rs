@@ -36,17 +36,18 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
             if !(gap > self.error * T::count(8)) {
                 break;
             }
-            let Some(simplex) = flattened(&found.witness, &points, &asked, &level, gap) else { break };
+            let Some(simplex) = flattened(&found.witness, &points, &nearest, &asked, &level, gap) else { break };
             found.witness = simplex;
         }
         Some(())
     }
 }
 
-/// A simplex with a point more, moved to the weights that are nearest to the origin: see "Cores that are apart".
+/// A simplex, whose point is `nearest`, with a point more, moved to the weights that are nearest to the origin: see "Cores that are apart".
 fn flattened<T: Real, const N: usize>(
     simplex: &Simplex<T, N>,
     points: &[TwoWords<T, N>],
+    nearest: &Vector<T, N>,
     asked: &Asked<T, N>,
     level: &Level<T, N>,
     gap: T,
@@ -57,8 +58,7 @@ fn flattened<T: Real, const N: usize>(
     }
     let n = level.n.high + level.n.low;
     let base = level.distance(points.first()?).0;
-    let nearest = combination(simplex, points);
-    let distance = -n.dot(&nearest);
+    let distance = -n.dot(nearest);
     if !(distance > T::zero()) {
         return None;
     }

@@ -5,6 +5,7 @@ use core::cell::{Cell, RefCell};
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
 use crate::solver::depth::{Anchor, Body, Pair, skew};
+use crate::support::failure::NOT_FINITE;
 use crate::support::{Failure, Support};
 use heapless::Vec;
 
@@ -66,11 +67,9 @@ impl<'p, 'b, 'a, T: Real, const N: usize> Recorder<'p, 'b, 'a, T, N> {
         Some((a.plus(&-b), TwoWords::from(on_a).turned(&self.pair.a.rotation).high))
     }
 
-    fn sample(&self, u: &Vector<T, N>, exhaustive: bool) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
-        let Some((point, on_a)) = self.ask(u) else {
-            self.latest.set(None);
-            return self.pair.sample(u, exhaustive);
-        };
+    /// A point that is not told in two words ends the query: one of the pair's own would be of another core, where a ball rolls in it, and perhaps a shortcut's.
+    fn sample(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
+        let (point, on_a) = self.ask(u).ok_or(Failure(NOT_FINITE))?;
         self.latest.set(Some(point));
         if self.behind(&point.high).is_none()
             && let Ok(mut points) = self.points.try_borrow_mut()
@@ -132,13 +131,10 @@ impl<T: Real, const N: usize> Body<'_, T, N> {
 
 impl<T: Real, const N: usize> Support<T, N> for Recorder<'_, '_, '_, T, N> {
     fn support(&self, u: &Vector<T, N>) -> Result<Vector<T, N>, Failure> {
-        Ok(self.sample(u, false)?.0)
+        Ok(self.sample(u)?.0)
     }
     fn support_with_witness(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
-        self.sample(u, false)
-    }
-    fn exhaustive(&self, u: &Vector<T, N>) -> Result<(Vector<T, N>, Vector<T, N>), Failure> {
-        self.sample(u, true)
+        self.sample(u)
     }
     fn radius(&self) -> T {
         let [a, b] = self.balls();
