@@ -146,11 +146,14 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         if holds { lower.at_least(self.floor.lower) } else { lower }
     }
 
-    /// Is d at least the threshold, whatever A's heights? d >= 0 is known of a set that contains the origin.
+    /// Is d >= 0, whatever A's heights? So it is for a set that contains the origin, unless an upper bound has disproved that.
+    pub(super) fn is_never_negative(&self) -> bool {
+        self.contains_origin() && self.upper() >= T::zero()
+    }
+
+    /// Is d at least the threshold for that reason?
     pub fn is_above_anyway(&self) -> bool {
-        self.options.threshold.is_some_and(|threshold| threshold <= T::zero())
-            && self.contains_origin()
-            && self.upper() >= T::zero()
+        self.options.threshold.is_some_and(|threshold| threshold <= T::zero()) && self.is_never_negative()
     }
 
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even

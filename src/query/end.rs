@@ -104,7 +104,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         };
         let upper = self.upper();
         let mut lower = self.floored(lower);
-        if lower < T::zero() && upper >= T::zero() && self.contains_origin() {
+        if lower < T::zero() && self.is_never_negative() {
             (lower, witness) = (T::zero(), Simplex::new(Vertex::empty()));
         }
         // Bounds that contradict each other say that A's support function is none (or its error larger than it says).

@@ -379,17 +379,6 @@ impl<T: Real, const N: usize> Found<T, N> {
         let (normal, point_a, point_b) =
             if half_space_first { (-self.normal, self.on_b, self.on_a) } else { (self.normal, self.on_a, self.on_b) };
         let support_calls = self.calls;
-        Depth {
-            outcome,
-            lower,
-            upper,
-            normal,
-            point_a,
-            point_b,
-            dimension: N,
-            support_calls,
-            failure: None,
-            ..Depth::failed(Failure(0))
-        }
+        Depth { outcome, lower, upper, normal, point_a, point_b, dimension: N, support_calls, ..Depth::unknown() }
     }
 }
