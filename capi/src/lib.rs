@@ -35,6 +35,7 @@ pub mod grasp;
 pub mod handle;
 #[cfg(test)]
 mod house;
+mod layout;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 mod numbers;

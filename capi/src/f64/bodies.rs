@@ -3,8 +3,9 @@
 
 use super::super::callback::precise;
 use super::super::handle::{self, qdist_solver};
+use super::super::layout::Gaps;
 use super::super::numbers::{coordinates, lengths, tiny};
-use super::super::pointer::{Gaps, In, Out};
+use super::super::pointer::{In, Out};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, overflow, qdist_status, status,
 };
@@ -213,12 +214,7 @@ pub(super) trait Joined<const N: usize>: 'static {
             support: support_of::<Hull<Self>, N>(),
             exhaustive: if set.has_shortcuts() { exhaustive_of::<Hull<Self>, N>() } else { None },
             user: join.user(),
-            radius: set.radius(),
-            extent: set.extent().at_least(tiny()),
-            error: set.error().at_least(tiny()),
-            dimension: N as u32,
-            contains_origin: set.contains_origin().into(),
-            ..qdist_set_f64::NONE
+            ..qdist_set_f64::stated_by(&set)
         };
         let (symmetry, rolling_radius) = (from_symmetry(set.symmetry()), set.rolling_radius());
         let made = Self::Body::new(made, Stated { symmetry, rolling_radius, ..Stated::NOTHING });

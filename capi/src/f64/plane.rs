@@ -8,7 +8,8 @@
 //! way: write { c, -s, s, c } for the cosine and sine that you have.
 
 use super::super::handle::qdist_solver;
-use super::super::pointer::{In, Out, gaps};
+use super::super::layout::gaps;
+use super::super::pointer::{In, Out};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{QDIST_SYMMETRY_NONE, qdist_unbounded};
 use super::bodies::{Half, Joined, Placed, Stated, depth};

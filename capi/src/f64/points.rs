@@ -6,10 +6,11 @@
 
 use super::super::callback::Deadline;
 use super::super::handle::{self, qdist_solver};
+use super::super::layout::gaps;
 use super::super::numbers::{
     MAX_DIMENSION, as_points, coordinates, dimension, farthest, in_range, padded, reach, tiny,
 };
-use super::super::pointer::{In, Out, gaps};
+use super::super::pointer::{In, Out};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_HULL_POINTS, QDIST_ERROR_WORKSPACE_SIZE,
     from_graph, from_shape, qdist_interrupt, qdist_status, status,

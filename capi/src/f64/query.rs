@@ -22,8 +22,9 @@
 //! one-sided derivatives, each the least of those at all minimisers.
 
 use super::super::handle::qdist_solver;
+use super::super::layout::{Defaults, gaps, versioned};
 use super::super::numbers::MAX_DIMENSION;
-use super::super::pointer::{Defaults, In, Out, gaps, versioned};
+use super::super::pointer::{In, Out};
 use super::super::status::{qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status};
 use super::asked::Question;
 use super::bodies::depth;

@@ -6,8 +6,9 @@
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
 use super::super::callback::{is_mirrored, support};
-use super::super::numbers::{flag, lengths};
-use super::super::pointer::{In, Out, gaps};
+use super::super::layout::gaps;
+use super::super::numbers::{flag, lengths, tiny};
+use super::super::pointer::{In, Out};
 use super::super::status::{Check, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status};
 use super::super::symmetry::{qdist_mirrored, qdist_turning, qdist_unbounded};
 use super::bodies::Placed;
@@ -115,6 +116,18 @@ impl qdist_set_f64 {
         dimension: 0,
         contains_origin: 0,
     };
+
+    /// What a set of the library states of itself; 0 would be "not known", so what is 0 is next to nothing.
+    pub(super) fn stated_by<const N: usize>(set: &impl Support<f64, N>) -> Self {
+        Self {
+            radius: set.radius(),
+            extent: set.extent().at_least(tiny()),
+            error: set.error().at_least(tiny()),
+            dimension: N as u32,
+            contains_origin: set.contains_origin().into(),
+            ..Self::NONE
+        }
+    }
 
     /// Checks the numbers for dimension `n`.
     #[inline(always)]

@@ -11,7 +11,6 @@
 //! its centre, an ellipsoid's a smaller ellipsoid-like set); its user is the shape, and the code that it returns is a qdist_status. For a shape
 //! in qdist_solve3, take body.set.
 
-use super::super::numbers::tiny;
 use super::super::pointer::{In, Out};
 use super::super::status::{Check, from_shape, qdist_status, status};
 use super::super::symmetry::{mirrored_always, mirrored_sideways, qdist_mirrored};
@@ -20,7 +19,7 @@ use super::bodies::{Placed, Stated};
 use super::sets::{qdist_body_f64, qdist_set_f64};
 use qdist::nalgebra::Matrix3;
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Failure, ShapeError, Sphere, Support};
-use qdist::{Real, TwoWords, Vector};
+use qdist::{TwoWords, Vector};
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -90,7 +89,7 @@ macro_rules! shape {
                 <$set>::trusted($($size),+)
             }
         }
-        $crate::pointer::gaps!($struct);
+        $crate::layout::gaps!($struct);
     };
 }
 pub(super) use shape;
@@ -129,12 +128,7 @@ pub(super) fn fill<S: Shape<N>, B: Placed<N>, const N: usize>(body: Out<B>, shap
         support: support_of::<Kernel<S>, N>(),
         mirrored,
         user: shape.user(),
-        radius: set.radius(),
-        extent: set.extent().at_least(tiny()),
-        error: set.error().at_least(tiny()),
-        dimension: N as u32,
-        contains_origin: set.contains_origin().into(),
-        ..qdist_set_f64::NONE
+        ..qdist_set_f64::stated_by(&set)
     };
     let is_precise = set.support_in_two_words(&TwoWords::from(Vector::repeat(1.0))).is_some();
     let precise = if is_precise { precise_of::<Kernel<S>, N>() } else { None };

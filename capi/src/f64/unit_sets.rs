@@ -5,8 +5,9 @@
 //! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them.
 
 use super::super::callback::{CallbackUnit, Parts};
+use super::super::layout::gaps;
 use super::super::numbers::{length, semi_axes};
-use super::super::pointer::{In, Out, gaps};
+use super::super::pointer::{In, Out};
 use super::super::status::{Check, QDIST_ERROR_DIMENSION, code, from_shape, qdist_status, status};
 use super::super::symmetry::qdist_mirrored;
 use super::points::qdist_points_f64;

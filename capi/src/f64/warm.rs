@@ -14,8 +14,9 @@
 //!   }
 
 use super::super::handle::qdist_solver;
+use super::super::layout::gaps;
 use super::super::numbers::{MAX_DIMENSION, dimension, dot, finite, first, padded};
-use super::super::pointer::{In, Out, gaps};
+use super::super::pointer::{In, Out};
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_STRUCT_SIZE, qdist_status, status,
 };

@@ -2,8 +2,9 @@
 //!
 //! How far is one pose of A from another? A length, in each case, that depends on A's motion only.
 
+use super::super::layout::versioned;
 use super::super::numbers::{coordinates, finite};
-use super::super::pointer::{In, versioned};
+use super::super::pointer::In;
 use super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_NONFINITE, QDIST_ERROR_NULL,
 };

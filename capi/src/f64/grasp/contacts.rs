@@ -5,8 +5,9 @@
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
 use super::super::super::grasp::{QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, all_of, from_contact, qdist_friction};
+use super::super::super::layout::gaps;
 use super::super::super::numbers::{flag, lengths};
-use super::super::super::pointer::{In, Out, gaps};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
 use qdist::Vector;
 use qdist::grasp::{

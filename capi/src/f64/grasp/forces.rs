@@ -5,8 +5,9 @@
 //! themselves.
 
 use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
+use super::super::super::layout::{Defaults, gaps, versioned};
 use super::super::super::numbers::{finite, length, padded};
-use super::super::super::pointer::{Defaults, In, Out, gaps, versioned};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, code, qdist_status, status};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use super::wrenches::{Wrenches, qdist_wrenches_f64};

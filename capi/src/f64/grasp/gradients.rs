@@ -4,8 +4,9 @@
 //! Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why.
 
 use super::super::super::grasp::{all_of, kink, qdist_kink};
+use super::super::super::layout::{gaps, versioned};
 use super::super::super::numbers::{flag, padded};
-use super::super::super::pointer::{In, Out, gaps, versioned};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, qdist_status, status};
 use super::super::asked::to_answer;
 use super::super::query::qdist_result_f64;

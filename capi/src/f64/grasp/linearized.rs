@@ -10,8 +10,9 @@ use super::super::super::grasp::{
     QDIST_TOOL_FROGGER, QDIST_TOOL_GRASPIT, from_contact, from_norm, norm as checked_norm, qdist_layout, qdist_norm,
     qdist_tool,
 };
+use super::super::super::layout::gaps;
 use super::super::super::numbers::lengths;
-use super::super::super::pointer::{In, Out, gaps};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
 use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
 use qdist::Vector;

@@ -5,8 +5,9 @@
 use super::super::super::grasp::{
     QDIST_HARD, QDIST_SOFT, from_grasp, norm as checked_norm, qdist_friction, qdist_norm,
 };
+use super::super::super::layout::gaps;
 use super::super::super::numbers::{farthest, in_range, lengths};
-use super::super::super::pointer::{In, Out, gaps};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{
     Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_FRICTION, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status,
 };

@@ -5,8 +5,9 @@
 
 use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
 use super::super::super::handle::{self, qdist_solver};
+use super::super::super::layout::{gaps, versioned};
 use super::super::super::numbers::padded;
-use super::super::super::pointer::{In, Out, gaps, versioned};
+use super::super::super::pointer::{In, Out};
 use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
 use super::super::asked::{convert, from_answer};
 use super::super::query::{qdist_options_f64, qdist_result_f64};
