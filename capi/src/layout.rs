@@ -25,6 +25,13 @@ pub(super) fn known<S: Versioned>(size: u32) -> Check<usize> {
     if size == size_of::<S>() || S::EARLIER.contains(&size) { Ok(size) } else { Err(QDIST_ERROR_STRUCT_SIZE) }
 }
 
+/// The size of a struct must be that of today's version.
+#[cfg(feature = "grasp")]
+#[inline(always)]
+pub(super) fn current<S: Versioned>(size: u32) -> Check {
+    if size as usize == size_of::<S>() { Ok(()) } else { Err(QDIST_ERROR_STRUCT_SIZE) }
+}
+
 /// `versioned!(type)`, `versioned!(type, earlier sizes)`.
 macro_rules! versioned {
     ($type:ty $(, $earlier:expr)*) => {

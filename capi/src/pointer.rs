@@ -9,8 +9,10 @@
 //! Structs that may grow begin with their size ([`Versioned`], module [`layout`](super::layout)). One from an earlier header is shorter: what it lacks takes its default when it is
 //! read, and stays unwritten when it is a result.
 
+#[cfg(feature = "grasp")]
+use super::layout;
 use super::layout::{Defaults, Gaps, Versioned, known};
-use super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, QDIST_ERROR_STRUCT_SIZE};
+use super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL};
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 
@@ -113,8 +115,8 @@ impl<S> In<S> {
     {
         aligned(self.0)?;
         // SAFETY: checked; a struct of any version begins with its size, which is all that is read before it is known.
-        let size = known::<S>(unsafe { self.0.cast::<u32>().read() })?;
-        if size == size_of::<S>() { self.get() } else { Err(QDIST_ERROR_STRUCT_SIZE) }
+        layout::current::<S>(unsafe { self.0.cast::<u32>().read() })?;
+        self.get()
     }
 
     /// A struct that may be of an earlier version, and its defaults for what it lacks.
@@ -331,6 +333,7 @@ unsafe impl<S: Zero, const K: usize, const M: usize> RowOf<S> for [qdist::Vector
 #[cfg(test)]
 mod tests {
     use super::super::layout::{gaps, versioned};
+    use super::super::status::QDIST_ERROR_STRUCT_SIZE;
     use super::*;
 
     /// As of today; the first version ended behind `a`.
