@@ -73,6 +73,43 @@ impl Numbers {
     }
 }
 
+/// What stands on an axis.
+#[derive(Clone, Copy, Debug)]
+enum Round {
+    Cylinder,
+    Cone,
+    Capsule,
+    Sphere,
+    Ellipsoid,
+}
+
+const PAIRS_ON_ONE_AXIS: [(Round, Round); 10] = [
+    (Round::Cylinder, Round::Cylinder),
+    (Round::Cylinder, Round::Cone),
+    (Round::Cone, Round::Cylinder),
+    (Round::Cylinder, Round::Capsule),
+    (Round::Capsule, Round::Cone),
+    (Round::Cylinder, Round::Sphere),
+    (Round::Cone, Round::Sphere),
+    (Round::Ellipsoid, Round::Cylinder),
+    (Round::Cone, Round::Ellipsoid),
+    (Round::Ellipsoid, Round::Ellipsoid),
+];
+
+impl Round {
+    /// The shape and how far it reaches along the axis.
+    fn random(self, rng: &mut Dice) -> (Numbers, f32) {
+        let [radius, half] = [(); 2].map(|()| rng.range(0.3, 1.0) as f32);
+        match self {
+            Round::Cylinder => (Numbers::Cylinder(radius, half), half),
+            Round::Cone => (Numbers::Cone(radius, half), half),
+            Round::Capsule => (Numbers::Capsule(radius, half), radius + half),
+            Round::Sphere => (Numbers::Capsule(radius, 0.0), radius),
+            Round::Ellipsoid => (Numbers::Ellipsoid(Vector3::new(radius, radius, half)), half),
+        }
+    }
+}
+
 fn direction(rng: &mut Dice) -> Vector3<f64> {
     loop {
         let v = Vector3::from_fn(|_, _| rng.signed());
@@ -366,4 +403,60 @@ fn bodies_that_do_not_always_tell_their_points_in_two_words() {
         });
     }
     assert_eq!(tried, 400);
+}
+
+/// Bodies of revolution on one axis, one on top of the other: the plane search leaves what one word does not tell to expansion in two.
+#[test]
+fn bodies_of_revolution_on_one_axis() {
+    let mut rng = Dice::new(19);
+    let (mut tried, mut open) = (0, Vec::new());
+    for number in 0..720 {
+        let (first, second) = PAIRS_ON_ONE_AXIS[number % PAIRS_ON_ONE_AXIS.len()];
+        let ((a, top), (b, bottom)) = (first.random(&mut rng), second.random(&mut rng));
+        // Along an axis of the world, or along any: then the numbers are of one axis up to rounding.
+        let turn = if number % 3 == 0 { pose(&mut rng).0 } else { SMatrix::identity() };
+        let height = f64::from(top) + f64::from(bottom) - rng.range(1e-3, 1e-2);
+        let (at, bt) =
+            ((turn, Vector3::zeros()), (turn, (turn.map(f64::from) * Vector3::z() * height).map(|x| x as f32)));
+        a.both(1.0, |a, wide_a| {
+            b.both(1.0, |b, wide_b| {
+                let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
+                if lower < 1e-3 {
+                    return;
+                }
+                tried += 1;
+                let (a, b) = (Body::new(a, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
+                let found = Workspace::<f32, 3, 64, 128>::new().solver().depth(&a, &b, &Options::default());
+                let (low, high) = (f64::from(found.lower), f64::from(found.upper));
+                assert!(low <= upper && lower <= high, "{number}: [{low}, {high}] for [{lower}, {upper}]");
+                if found.outcome != Outcome::Converged {
+                    open.push((number, first, second, found.outcome, low, high));
+                }
+            });
+        });
+    }
+    assert!(tried > 500 && open.is_empty(), "{} of {tried}: {open:?}", open.len());
+}
+
+/// Two cones, tip to tip: a whole circle of directions is the least, which expansion cannot tile, and their plane knows one word. The bracket is true, and
+/// some roundoffs of the bodies' size wide.
+#[test]
+fn tips_of_cones_on_one_axis() {
+    let mut rng = Dice::new(23);
+    let over = SMatrix::<f32, 3, 3>::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+    for number in 0..200 {
+        let ((a, top), (b, bottom)) = (Round::Cone.random(&mut rng), Round::Cone.random(&mut rng));
+        let height = top + bottom - rng.range(2e-3, 2e-2) as f32;
+        let (at, bt) = ((SMatrix::identity(), Vector3::zeros()), (over, Vector3::new(0.0, 0.0, height)));
+        a.both(1.0, |a, wide_a| {
+            b.both(1.0, |b, wide_b| {
+                let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
+                let (a, b) = (Body::new(a, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
+                let found = Workspace::<f32, 3, 64, 128>::new().solver().depth(&a, &b, &Options::default());
+                let (low, high) = (f64::from(found.lower), f64::from(found.upper));
+                assert!(low <= upper && lower <= high, "{number}: [{low}, {high}] for [{lower}, {upper}]");
+                assert!(high - low < 3e-5, "{number}: {found:?}");
+            });
+        });
+    }
 }

@@ -8,7 +8,8 @@
 //! min over u of h_M(u) = min over u in the meridian plane of h_M(u)
 //! ```
 //!
-//! so points of the half plane (the other half is its mirror image) give the same bracket in a few steps.
+//! so points of the half plane (the other half is its mirror image) give the same bracket in a few steps. (They are points in one word. Shallow contact
+//! that needs two is expanded in space after all: its minimum is at a pole, unless the tips of two cones meet.)
 //!
 //! # The chain, and what it proves
 //!

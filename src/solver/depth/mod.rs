@@ -537,7 +537,12 @@ impl<T: Real> Solver<'_, T, 3> {
         if let Some(axis) = axis.filter(Axis::is_common)
             && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options)
         {
-            return Depth::new(&answer, &pair);
+            // (What a plane of one word leaves open in shallow contact, expansion in two may close: at a pole no circle is to be tiled.)
+            return if is_shallow(&answer) {
+                self.conclude_pair(&pair, &answer, &pair.aimed(options))
+            } else {
+                Depth::new(&answer, &pair)
+            };
         }
         match a.shape.turning().or(b.shape.turning()) {
             Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options),
