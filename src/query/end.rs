@@ -146,22 +146,18 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         }
     }
 
-    /// The answer with a bracket that is known better, in scaled units, and the direction that proves its upper end, where that is new.
-    pub fn refined(&self, answer: Answer<T, N>, bracket: &Bracket<T>, direction: Option<Vector<T, N>>) -> Answer<T, N> {
-        let outcome = match self.options.threshold {
+    /// Gives the answer a bracket that is known better, in scaled units, and the direction that proves its upper end, where that is new.
+    pub fn refine(&self, answer: &mut Answer<T, N>, bracket: &Bracket<T>, direction: Option<Vector<T, N>>) {
+        answer.outcome = match self.options.threshold {
             Some(t) if bracket.lower >= t => Outcome::Above,
             Some(t) if bracket.upper < t => Outcome::Below,
             _ if self.is_met(bracket) => Outcome::Converged,
             _ => answer.outcome,
         };
-        Answer {
-            outcome,
-            lower: self.unscaled(bracket.lower, -T::one()),
-            upper: self.unscaled(bracket.upper, T::one()),
-            direction: direction.unwrap_or(answer.direction),
-            iterations: self.limits.iterations,
-            support_calls: self.limits.support_calls,
-            ..answer
-        }
+        answer.lower = self.unscaled(bracket.lower, -T::one());
+        answer.upper = self.unscaled(bracket.upper, T::one());
+        answer.direction = direction.unwrap_or(answer.direction);
+        answer.iterations = self.limits.iterations;
+        answer.support_calls = self.limits.support_calls;
     }
 }

@@ -621,10 +621,26 @@ pub fn unbounded<T: Real, const N: usize>(
 impl<T: Real, const N: usize> Solver<'_, T, N> {
     /// The depth of a pair by expansion, or by distance where that decides, after so many support calls.
     fn expand_pair(&mut self, pair: &Pair<'_, '_, T, N>, calls: u32, options: &Options<'_, T, N>) -> Depth<T, N> {
-        let ball = Ball::unit();
         let options = pair.aimed(options);
-        let answer = self.expand_only(Pair::query(pair, &ball, calls, &options));
+        let answer = self.expand_once(pair, calls, &options);
         self.conclude_pair(pair, &answer, &options)
+    }
+
+    /// The answer of a first look. (Its query leaves the stack before a second one begins.)
+    #[inline(never)]
+    fn expand_once(&mut self, pair: &Pair<'_, '_, T, N>, calls: u32, options: &Options<'_, T, N>) -> Answer<T, N> {
+        let ball = Ball::unit();
+        let (mut query, checked) = Pair::query(pair, &ball, calls, options);
+        match checked.and_then(|()| query.normalize()) {
+            Ok(()) => self.expand_apart(&mut query),
+            Err(failure) => self.give_up(&mut query, failure),
+        }
+    }
+
+    /// Expansion for a first and a second look, with a place on the stack of its own.
+    #[inline(never)]
+    fn expand_apart(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
+        self.expand_ready(query)
     }
 
     /// The answer, or that of a second look where it is open.
@@ -688,15 +704,17 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         if !ready {
             return Some(Answer { support_calls: calls, ..answer.clone() });
         }
-        let second = self.expand_ready(&mut query);
-        // (A body that does not tell a point in two words after all has not failed: the first answer stands.)
-        if recorder.is_some() && second.failure.is_some() {
-            return Some(Answer { support_calls: second.support_calls, ..answer.clone() });
+        let mut second = self.expand_apart(&mut query);
+        match &recorder {
+            // (A body that does not tell a point in two words after all has not failed: the first answer stands.)
+            Some(_) if second.failure.is_some() => {
+                return Some(Answer { support_calls: second.support_calls, ..answer.clone() });
+            }
+            Some(recorder) if is_shallow(&second) => {
+                Fine::new(&mut self.polytope, &mut query, recorder).refine(&mut second);
+            }
+            _ => {}
         }
-        let second = match &recorder {
-            Some(recorder) if is_shallow(&second) => Fine::new(&mut self.polytope, &mut query, recorder).refine(second),
-            _ => second,
-        };
         Some(second.or_wider(answer))
     }
 }

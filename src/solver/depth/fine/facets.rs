@@ -34,7 +34,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
     fn expand(&mut self, found: &mut Found<T, N>) -> Option<Index> {
         let start = self.widest(found.bracket.upper)?;
         let corners = self.corners(&start);
-        let level = self.level(&start.normal, &corners, &self.points(&corners)?)?;
+        let level = self.level(&start.normal, &corners, &self.exact(&corners)?)?;
         self.ask_along(&level, found)?;
         for place in 0..self.polytope.places() {
             self.rate(place, &level, &found.bracket)?;
@@ -48,7 +48,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
                 break;
             }
             let corners = self.corners(&facet);
-            let points = self.points(&corners)?;
+            let points = self.exact(&corners)?;
             let level = self.level(&facet.normal, &corners, &points)?;
             let asked = self.ask_along(&level, found)?;
             // (The new upper end may do.)
@@ -106,7 +106,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         let is_enough = |lower: T| self.query.is_met(&Bracket { lower, ..*bracket });
         if !is_enough(bound) {
             let corners = self.corners(&facet);
-            if let Some(points) = self.points(&corners) {
+            if let Some(points) = self.exact(&corners) {
                 bound = bound.at_least(level.lower(&points) * self.query.scale());
                 if !is_enough(bound)
                     && let Some(own) = self.level(&facet.normal, &corners, &points)

@@ -107,8 +107,9 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         Fine { polytope, query, recorder, error: fine_error(recorder.pair) }
     }
 
-    /// The answer with the bracket in two words.
-    pub fn refine(&mut self, answer: Answer<T, N>) -> Answer<T, N> {
+    /// Gives the answer the bracket in two words.
+    #[inline(never)]
+    pub fn refine(&mut self, answer: &mut Answer<T, N>) {
         let bracket = Bracket { lower: answer.lower, upper: answer.upper }.scaled(self.query.scale());
         let mut found = Found { bracket, direction: None, witness: answer.witness.clone() };
         // (What was proved before an end without a result stays proved.)
@@ -118,11 +119,12 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
             _ => None,
         };
         if !(found.bracket.lower <= found.bracket.upper) {
-            return answer;
+            return;
         }
-        let (vertices, facets) = (self.polytope.peak_vertices(), self.polytope.peak_facets());
-        let answer = Answer { witness: found.witness, vertices, facets, ..answer };
-        self.query.refined(answer, &found.bracket, found.direction)
+        answer.witness = found.witness;
+        answer.vertices = self.polytope.peak_vertices();
+        answer.facets = self.polytope.peak_facets();
+        self.query.refine(answer, &found.bracket, found.direction);
     }
 
     /// Asks along a level's vector, as it will be reported; the upper bound that this proves counts.
@@ -146,9 +148,9 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         Level::new(n, self.recorder.balls(), self.error)
     }
 
-    /// The points behind a simplex's corners, which are in the bodies' unit.
+    /// The exact points behind a simplex's corners, which are in the bodies' unit.
     #[inline(never)]
-    fn points(&self, simplex: &Simplex<T, N>) -> Option<Vec<TwoWords<T, N>, MAX_CORNERS>> {
+    fn exact(&self, simplex: &Simplex<T, N>) -> Option<Vec<TwoWords<T, N>, MAX_CORNERS>> {
         let mut points = Vec::new();
         for corner in &simplex.corners {
             points.push(self.recorder.behind(&corner.vertex.point)?).ok()?;

@@ -13,7 +13,7 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         let scale = self.query.scale();
         self.recorder.freeze(|point| found.witness.corners().iter().any(|corner| corner.vertex.point == *point));
         for _ in 0..STEPS {
-            let points = self.points(&found.witness)?;
+            let points = self.exact(&found.witness)?;
             let nearest = combination(&found.witness, &points);
             if !(norm(&nearest) > T::zero()) {
                 return None;
