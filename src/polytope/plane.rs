@@ -1,6 +1,7 @@
 //! Planes of facets: the incremental normal and its repair.
 
 use super::{Index, Polytope};
+use crate::bounds::Axes;
 use crate::math::{Vector, norm, unit};
 use crate::scalar::Real;
 
@@ -41,6 +42,14 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         let roundoffs = T::count(3 * N + 8) * T::ROUNDOFF;
         // (A resolution by direction is 8 N roundoffs; what is needed is less.)
         height > roundoffs * self.reach || self.axes.as_ref().is_some_and(|axes| height > axes.resolution(normal))
+    }
+
+    /// Is it certainly beneath what is at this height, and by a rounding of any height more?
+    pub fn is_far_beneath(&self, normal: &Vector<T, N>, height: T) -> bool {
+        let height = height - normal.dot(&self.center);
+        let roundoffs = T::count(16 * N) * T::ROUNDOFF;
+        let along = |axes: &Axes<T, N>| height > axes.resolution(normal) * T::count(2);
+        height > roundoffs * self.reach || self.axes.as_ref().is_some_and(along)
     }
 
     /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that

@@ -64,6 +64,9 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
             // Points are right to a roundoff of their own size here: neighbours that are as near tell as little as that.
             let size = points.iter().fold(T::zero(), |size, point| size.at_least(norm(&point.high)));
             let near = size * self.query.scale() * (T::count(2 * N) * T::ROUNDOFF);
+            if !self.polytope.is_far_beneath(&facet.normal, facet.normal.dot(&vertex.point)) {
+                break;
+            }
             if self.polytope.insert(index, vertex, near) != Some(Insertion::Done) {
                 break;
             }
@@ -98,10 +101,14 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         near.map(|facet| (facet, width(facet))).reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(facet, _)| *facet)
     }
 
-    /// The key of a facet: what it bounds d by, along this level or its own, where one word does not suffice. `None` where the origin may be outside.
+    /// The key of a facet: what it bounds d by, along this level or its own, where one word does not suffice. `None` where the origin or the
+    /// centre may be outside.
     #[inline(never)]
     fn rate(&mut self, index: Index, level: &Level<T, N>, bracket: &Bracket<T>) -> Option<()> {
         let Some(facet) = self.polytope.live_facet(index).copied() else { return Some(()) };
+        if !self.polytope.is_far_beneath(&facet.normal, facet.offset) {
+            return None;
+        }
         let mut bound = self.rough(&facet)?;
         let is_enough = |lower: T| self.query.is_met(&Bracket { lower, ..*bracket });
         if !is_enough(bound) {

@@ -29,7 +29,8 @@
 //!
 //! One word loses sight of a curved surface where a facet is a roundoff of the size beneath it. There expansion goes on as it began, the lowest facet
 //! first, with lower bounds in two words for keys: each step asks along the corrected normal, and inserts the point where it is higher than the facet
-//! by more than E.
+//! by more than E. In one word, the point may be beneath the facet. That the surface winds around the origin is as good as before ("Around the origin" in
+//! module [`bounds`](crate::bounds)) when along each facet's normal the facet and the point are above the centre by more than heights in one word are off.
 //!
 //! # Cores that are apart
 //!
