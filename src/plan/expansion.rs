@@ -14,6 +14,7 @@ use crate::support::Failure;
 const WIDENINGS: usize = 8;
 
 /// What the expansion ended with: the lowest key, and its facet if it is known.
+#[derive(Clone, Copy)]
 pub(crate) struct Expanded<T> {
     pub stop: Stop,
     pub key: T,
@@ -228,25 +229,29 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// The simplex of the surface that touches the largest d Q. For a ball, the one around the foot of the perpendicular on
     /// the plane that proves the upper bound: usually the lowest facet; but that one may be another of several in
     /// the plane, or belong to another of several minima.
+    #[inline(always)]
     pub(crate) fn touching_simplex(&self, query: &Query<'_, T, N>, facet: Option<Index>) -> Simplex<T, N> {
-        self.simplex_around(query.foot(), &query.best.direction, query.options.relative, facet)
+        let mut simplex = Simplex::vacant();
+        self.find_simplex(query.foot(), &query.best.direction, query.options.relative, facet, &mut simplex);
+        simplex
     }
 
     /// The same, around a point in a plane with this normal, known to a share `relative` along it, and to the root of that sideways.
-    pub(crate) fn simplex_around(
+    pub(crate) fn find_simplex(
         &self,
         foot: Option<Vector<T, N>>,
         normal: &Vector<T, N>,
         relative: T,
         facet: Option<Index>,
-    ) -> Simplex<T, N> {
+        simplex: &mut Simplex<T, N>,
+    ) {
         let lowest = match facet {
             Some(index) => self.facet(index),
             None => self.lowest(),
         };
-        let Some(facet) = lowest else { return Simplex::new(Vertex::empty()) };
-        let Some(foot) = foot else { return self.seen_from(facet, &Vector::zeros()) };
-        let mut simplex = self.seen_from(facet, &foot);
+        let Some(facet) = lowest else { return simplex.restart(&Vertex::empty()) };
+        let Some(foot) = foot else { return self.see(facet, &Vector::zeros(), simplex) };
+        self.see(facet, &foot, simplex);
         let miss = simplex.point();
         let resolution = self.resolution();
         let relative = relative.at_least(T::zero());
@@ -255,30 +260,29 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         if (miss.dot(&miss) > aside * aside || miss.dot(normal).abs() > short)
             && let Some(nearer) = self.nearer(&foot, norm(&miss))
         {
-            simplex = self.seen_from(nearer, &foot);
+            self.see(nearer, &foot, simplex);
         }
         simplex.translate(&foot);
-        simplex
     }
 
     /// A facet with the weights of its point nearest to a point, which is taken for the origin.
     #[inline(never)]
-    fn seen_from(&self, facet: &Facet<T, N>, point: &Vector<T, N>) -> Simplex<T, N> {
-        let mut simplex = self.corners(facet);
+    fn see(&self, facet: &Facet<T, N>, point: &Vector<T, N>, simplex: &mut Simplex<T, N>) {
+        self.write_corners(facet, simplex);
         simplex.translate(&-point);
         simplex.minimize(self.resolution());
-        simplex
     }
 
     /// The facet that is nearest to a point, if one is nearer than `distance`.
     #[cold]
     #[inline(never)]
     fn nearer(&self, point: &Vector<T, N>, mut distance: T) -> Option<&Facet<T, N>> {
-        let mut nearest = None;
+        let (mut nearest, mut simplex) = (None, Simplex::vacant());
         for facet in self.facets() {
             // (No point of a facet is nearer than its plane.)
             if (facet.offset - facet.normal.dot(point)).abs() < distance {
-                let found = norm(&self.seen_from(facet, point).point());
+                self.see(facet, point, &mut simplex);
+                let found = norm(&simplex.point());
                 if found < distance {
                     (nearest, distance) = (Some(facet), found);
                 }

@@ -271,13 +271,20 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
 
     /// The vertices of a facet.
     pub fn corners(&self, facet: &Facet<T, N>) -> Simplex<T, N> {
+        let mut simplex = Simplex::vacant();
+        self.write_corners(facet, &mut simplex);
+        simplex
+    }
+
+    /// Writes them in the place of another simplex. (Copies of simplices cost as much as the arithmetic on them.)
+    #[inline(always)]
+    pub fn write_corners(&self, facet: &Facet<T, N>, simplex: &mut Simplex<T, N>) {
         let finite = facet.vertices.iter().filter(|&&v| usize::from(v) >= self.rays);
         let mut vertices = finite.filter_map(|&v| self.vertices.get(usize::from(v)));
-        let mut simplex = Simplex::new(vertices.next().copied().unwrap_or(Vertex::empty()));
+        simplex.restart(vertices.next().unwrap_or(&Vertex::empty()));
         for vertex in vertices {
             simplex.push(*vertex);
         }
-        simplex
     }
 
     /// Stores a vertex, or nothing when the capacity is used up.

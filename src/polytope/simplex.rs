@@ -133,9 +133,20 @@ impl<T: Real, const N: usize> Edges<T, N> {
 impl<T: Real, const N: usize> Simplex<T, N> {
     /// One point, with weight 1.
     pub fn new(vertex: Vertex<T, N>) -> Self {
-        let mut corners = Vec::new();
-        let _ = corners.push(Corner { vertex, weight: T::one() });
-        Simplex { corners }
+        let mut simplex = Simplex::vacant();
+        simplex.restart(&vertex);
+        simplex
+    }
+
+    /// Room for one that is to be written.
+    pub(crate) fn vacant() -> Self {
+        Simplex { corners: Vec::new() }
+    }
+
+    /// One point again, with weight 1.
+    pub(crate) fn restart(&mut self, vertex: &Vertex<T, N>) {
+        self.corners.clear();
+        let _ = self.corners.push(Corner { vertex: *vertex, weight: T::one() });
     }
 
     /// 1 to N + 1 vertices with their weights.

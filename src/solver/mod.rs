@@ -149,10 +149,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
     #[inline(always)]
     pub(crate) fn expand_ready(&mut self, query: &mut Query<'_, T, N>) -> Answer<T, N> {
         self.polytope.reset();
-        match self.open(query, expand) {
-            Ok(Opening { end: Ok(expanded), near }) => self.conclude(query, expanded, near.as_ref()),
-            Ok(Opening { end: Err(stop), near }) => self.conclude_near(query, stop, near.as_ref()),
-            Err(failure) => self.give_up(query, failure),
+        // (By reference: what was nearest is not copied.)
+        match &self.open(query, expand) {
+            Ok(Opening { end: Ok(expanded), near }) => self.conclude(query, *expanded, near.as_ref()),
+            Ok(Opening { end: Err(stop), near }) => self.conclude_near(query, *stop, near.as_ref()),
+            Err(failure) => self.give_up(query, *failure),
         }
     }
 
@@ -222,8 +223,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         lower: T,
         witness: Simplex<T, N>,
     ) -> Answer<T, N> {
-        let answer = query.answer(stop, lower, witness);
-        Answer { vertices: self.polytope.peak_vertices(), facets: self.polytope.peak_facets(), ..answer }
+        let mut answer = query.answer(stop, lower, witness);
+        answer.vertices = self.polytope.peak_vertices();
+        answer.facets = self.polytope.peak_facets();
+        answer
     }
 
     /// The distance iteration on the core of A, watched by the bracket.

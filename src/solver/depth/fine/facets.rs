@@ -24,7 +24,8 @@ impl<'f, 'm, 'q, 'p, 'b, 'a, T: Real, const N: usize> Fine<'f, 'm, 'q, 'p, 'b, '
         if let Some(direction) = found.direction {
             // The query's best direction is the best in one word; the witness belongs to the one that is reported.
             let foot = direction * (found.bracket.upper - self.query.bounds.radius);
-            found.witness = self.polytope.simplex_around(Some(foot), &direction, self.query.options.relative, lowest);
+            let relative = self.query.options.relative;
+            self.polytope.find_simplex(Some(foot), &direction, relative, lowest, &mut found.witness);
             found.witness.rescale(T::one() / self.query.scale());
         }
         lowest.map(drop)
