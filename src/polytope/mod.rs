@@ -120,8 +120,7 @@ pub struct Polytope<'a, T, const N: usize> {
     fresh: Index,
     /// The centroid of the first simplex.
     center: Vector<T, N>,
-    /// Every facet ever made had the centre certainly beneath it: the surface winds around the centre once (module
-    /// `bounds`).
+    /// Every facet ever made had the centre certainly beneath it: the surface winds around the centre once (module `bounds`).
     sound: bool,
     /// Largest |v|^2 over the vertices.
     reach_squared: T,
@@ -206,8 +205,7 @@ impl<'a, T: Real, const N: usize> Polytope<'a, T, N> {
         self.facets.len() >= 4 * N && self.vertices.len() >= 3 * N
     }
 
-    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a
-    /// unit n and |v| <= reach, with room for the error of n itself.
+    /// Lengths below this cannot be told from zero in a plane equation: the rounding error of n.v for a unit n and |v| <= reach, with room for that of n.
     pub fn resolution(&self) -> T {
         T::count(8 * N) * T::ROUNDOFF * self.reach
     }
