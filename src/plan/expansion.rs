@@ -193,7 +193,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             return Ok(Some(Stop::Capacity));
         }
         self.rate_fresh(query)?;
-        Ok(None)
+        Ok(self.ends_at_origin(query)?.then_some(Stop::Zero))
     }
 
     /// For a Q that is not a ball, expansion towards a few directions of Q can leave facets so near to the origin that

@@ -6,6 +6,7 @@
 //!    shoot    cone                rays shot at A, and the upper bounds they find; cones of directions
 //!      ray                        the simplex that a ray pierces
 //!       basis                     its points, and the inverse of their matrix
+//!                     polar       open sets: a direction in which A ends at the origin
 //! ```
 
 pub(crate) mod basis;
@@ -13,6 +14,7 @@ mod cone;
 mod conewise;
 pub(crate) mod distance;
 pub(crate) mod expansion;
+mod polar;
 pub(crate) mod race;
 mod ray;
 pub(crate) mod rays;

@@ -57,12 +57,14 @@ fn an_open_grasp_costs_no_more_than_its_proof() {
                 assert!(answer.upper <= 1e-12 * w.extent().max(1.0), "{case} {:e}", answer.upper);
                 let outcome = answer.outcome;
                 assert!(matches!(outcome, Outcome::Touching | Outcome::Degenerate), "{case} {outcome:?}");
+                // (The first simplex has 7 facets: none is made beyond it.)
+                assert!(answer.facets <= 7 || case % 6 == 5, "{case} {answer:?}");
                 calls.push(answer.support_calls);
             }
         }
     }
     calls.sort_unstable();
-    assert!(calls[calls.len() / 2] <= 20 && calls[calls.len() * 9 / 10] <= 60, "{:?}", &calls[calls.len() * 9 / 10..]);
+    assert!(calls[calls.len() / 2] <= 20 && calls[calls.len() - 1] <= 40, "{:?}", &calls[calls.len() * 9 / 10..]);
 }
 
 /// A set like another one that does not tell that it contains the origin.

@@ -108,6 +108,12 @@ impl<T: Real> Support<T, 6> for Silent<'_, T> {
     fn error(&self) -> T {
         self.0.error()
     }
+    fn extents(&self) -> Vector<T, 6> {
+        self.0.extents()
+    }
+    fn errors(&self) -> Vector<T, 6> {
+        self.0.errors()
+    }
     fn contains_origin(&self) -> bool {
         true
     }
