@@ -70,6 +70,9 @@
 //! Where this cannot be shown (the origin is outside or on the boundary, or the set is too thin for the arithmetic at hand), the lower bound
 //! is minus the norm of the point of conv V nearest to the origin.
 //!
+//! The error of h_Q itself is added to the quotient where it is made (`Query::key`, `Query::upper`). Plans that leave no such surface derive their lower bounds in
+//! their own files, from the same margins: `plan::conewise`, `plan::rays`, `solver::depth::{meridian, sectors, ellipsoids, half_space, fine}`, `solver::warm`.
+//!
 //! A ball term r of A is added to both sides (Euclidean Q only; there h(core + rB) = h(core) + r |n|).
 
 use crate::math::Vector;

@@ -40,6 +40,9 @@
 //! cheaper, the two take turns (`plan::race`). From tick to tick of a control loop the bracket moves along with the set ([`Tracker`]). Meshes, which are not
 //! convex, have a search of their own, and a tracker of their own (`mesh::depth`).
 //!
+//! In `f32`, a depth that is a thousandth of the bodies' size is a few roundoffs: what rounding leaves open there is measured once more with points in two words
+//! (`solver::depth::fine`).
+//!
 //! Three things keep it exact and fast:
 //!
 //! * The **bookkeeping** (`polytope`) is adjacency: what a new point eliminates is found by walking, the new facets'
@@ -55,7 +58,8 @@
 //!
 //! # The house
 //!
-//! Arrows point down; nobody knows who is above.
+//! Arrows point down; nobody knows who is above, but for one name: a shape says by which route of `solver::depth` it wants to be measured, so that a program
+//! without that shape does not contain the route (`tests/core/house.rs` checks all of it).
 //!
 //! ```text
 //! mesh        triangle meshes: how far out (feature)

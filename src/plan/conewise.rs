@@ -37,7 +37,7 @@
 //!
 //! # What was tried and lost
 //!
-//! Facets made for paper_a1 at 1e-4 (lowest facet first: 100 %): last made first 103 to 119 %; first made first 135 %; at random 117 to 120 %.
+//! Facets made for the paper's grasp a1 at 1e-4 (lowest facet first: 100 %): last made first 103 to 119 %; first made first 135 %; at random 117 to 120 %.
 //! Halving between the generators that divide the unfinished facets most evenly, however near to each other: never ends, as
 //! cones become flat instead of narrow. Expansion that starts from the simplex which the polar iteration pierces at a local
 //! minimum: 0.2 to 3 times the time of ten grasps, about 1 in the median, and slivers that leave the origin on the surface.

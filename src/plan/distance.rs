@@ -1,4 +1,4 @@
-//! The point of a convex set nearest to the origin: the Gilbert-Johnson-Keerthi iteration [20], with Wolfe's
+//! The point of a convex set nearest to the origin: the Gilbert-Johnson-Keerthi iteration (reference [20] of Zheng & Yamane), with Wolfe's
 //! sub-problem (module [`simplex`](crate::polytope::simplex)).
 //!
 //! The solver needs it where expansion has nothing to expand: for the distance of separated bodies, for bodies whose

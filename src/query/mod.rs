@@ -1,4 +1,4 @@
-//! The state of one query. Each part is changed in one file:
+//! The state of one query. Each part has a file, which says what may be done with it:
 //!
 //! * `options` is the caller's. `sets` is what A and Q say of themselves; nothing changes it.
 //! * `asking` asks A, which may make the best upper bound better, and `rivals` notes what ties with it.

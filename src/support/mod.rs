@@ -9,8 +9,8 @@
 //! A set is given in two parts, `A = core + r B`: the points that [`Support::support`] returns belong to
 //! the *core*, and [`Support::radius`] is the radius r of a ball swept over it. A sphere is a point with a
 //! radius, a capsule a segment with a radius, a margin is a radius on anything. With a Euclidean Q the
-//! solver never expands the ball, since d(core + r B) = d(core) + r exactly (`design`: the unit ball is the
-//! worst case of polytope expansion).
+//! solver never expands the ball, since d(core + r B) = d(core) + r exactly (and a ball is the worst case of polytope
+//! expansion).
 //!
 //! # What a support function promises, in floating point
 //!
