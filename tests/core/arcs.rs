@@ -445,6 +445,31 @@ fn round_profiles_cost_n_log_n() {
     assert!(r.outcome == Outcome::Interrupted && r.iterations == 100, "{r:?}");
 }
 
+/// Spheroids as callbacks, about one centre: the least sum of axes, but for what 20,000 points cut off. Round ones need thousands of points.
+#[test]
+fn round_profiles_of_any_shape() {
+    let mut dice = Dice::new(11);
+    let mut memory = Memory::new::<f64, 3>(8_000, 16_000);
+    let mut most = 0;
+    for k in 0..100 {
+        let mut axes = || {
+            let radius = dice.range(0.3, 1.0);
+            [radius, if k % 3 == 0 { radius } else { dice.range(0.3, 1.0) }]
+        };
+        let ([r, h], [s, i]) = (axes(), axes());
+        let (a, b) = (Turned::new(20_000, r, h), Turned::new(20_000, s, i));
+        let turn = anyhow(&mut dice);
+        let place = Vector::from(dice.direction::<3>()) * if k % 2 == 0 { 0.0 } else { 3.0 };
+        let body = |shape| Body::new(shape, *turn.matrix(), place).unwrap();
+        let (a, b) = (body(&a as &(dyn Support<f64, 3> + Sync)), body(&b as &(dyn Support<f64, 3> + Sync)));
+        let d = memory.solver::<f64, 3>().depth(&a, &b, &Options::default());
+        let least = (r + s).min(h + i);
+        assert!(d.outcome == Outcome::Converged && d.lower <= least && least - 2e-8 <= d.upper, "{k} {least} {d:?}");
+        most = most.max(d.iterations);
+    }
+    assert!(most > 500, "{most}");
+}
+
 /// Ellipsoids of the same axes about the same centre: two smooth minima that expansion must tile, and the least sum of axes in closed form.
 #[test]
 fn equal_ellipsoids_about_one_centre() {

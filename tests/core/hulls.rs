@@ -384,3 +384,111 @@ fn lists_that_overlap_cost_no_more_than_the_points() {
     }
     assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
+
+/// A graph in which vertices lead up one by one, through lists that overlap and are as long as a word of 16 bits can say. Vertex i is as high as `rank[i]`.
+fn overlapping<W: Word>(dice: &mut Dice, rank: &[usize]) -> Vec<W> {
+    let (count, word) = (rank.len(), |x: usize| W::from_position(x).unwrap_or(W::EMPTY));
+    let mut upwards = vec![0; count];
+    rank.iter().enumerate().for_each(|(vertex, &rank)| upwards[rank] = vertex);
+    // A list's length, which is no vertex, the next one up, and some that are lower. What follows is the lists of those below, and then more of the lowest.
+    let chunk = W::BLOCK.max(2);
+    let longest = dice.pick(&[1 << 12, 1 << 14, 65_535]);
+    let mut words = vec![word(1), word(count), word(upwards[0])];
+    words.extend(rank.iter().map(|&rank| word((count - rank) * chunk / W::BLOCK)));
+    for k in 0..=count + longest / chunk {
+        let next = (count + 1).saturating_sub(k).min(count - 1);
+        words.push(word(count + 1 + dice.below(longest - count)));
+        words.push(word(upwards[next]));
+        words.extend((2..chunk).map(|_| word(upwards[dice.below(next + 1)])));
+    }
+    words
+}
+
+/// What a support call costs, beside a scan of all points: a graph may make it longer by a factor that is the same for any number of points.
+fn no_dearer_than_points<T: Real, W: Word>(seed: u64, graphs: usize) {
+    let mut dice = Dice::new(seed);
+    let (mut climbing, mut scanning) = (Duration::ZERO, Duration::ZERO);
+    for case in 0..graphs {
+        let count = 200 + dice.below(2000);
+        let mut rank: Vec<usize> = (0..count).collect();
+        for i in (1..count).rev() {
+            rank.swap(i, dice.below(i + 1));
+        }
+        let mut place = |i: usize| [rank[i] as f64 + 0.4 * dice.unit(), (i % 7) as f64, (i % 11) as f64].map(T::of);
+        let points: Vec<[T; 3]> = (0..count).map(&mut place).collect();
+        // Chains through lists that overlap, and words that mean nothing.
+        let nonsense = case % 4 == 3;
+        let words: Vec<W> = if nonsense {
+            let header = [4, count].map(|x| W::from_position(x).unwrap());
+            let random = (0..8 * count).map(|_| W::from_position(dice.below(2 * count)).unwrap());
+            header.into_iter().chain(random).collect()
+        } else {
+            overlapping(&mut dice, &rank)
+        };
+        let hull = Hull::new(&points, HullGraph::from_words(&words).unwrap()).unwrap();
+        for _ in 0..8 {
+            let [y, z] = [0; 2].map(|_| T::of(0.02 * dice.signed()));
+            let u = Vector::from(if nonsense { direction(&mut dice).map(T::of) } else { [T::one(), y, z] });
+            let start = Instant::now();
+            let (climbed, between) = (hull.support(&u).unwrap(), Instant::now());
+            let scanned = hull.exhaustive(&u).unwrap().0;
+            (climbing, scanning) = (climbing + (between - start), scanning + between.elapsed());
+            assert!(points.contains(&climbed.into()), "{case}");
+            assert!(nonsense || climbed == scanned, "{case}: {climbed} {scanned}");
+        }
+    }
+    println!("{climbing:?} with graphs, {scanning:?} without");
+    // 25 products a point instead of one; without a bound it is thousands, and half a minute. (Some seconds are for whatever else the machine does.)
+    let most = 200 * scanning + Duration::from_secs(5);
+    assert!(climbing < most, "{climbing:?} with graphs, {scanning:?} without");
+}
+
+#[test]
+fn no_graph_makes_a_hull_dearer_than_its_points() {
+    no_dearer_than_points::<f32, u16>(31, 120);
+    no_dearer_than_points::<f64, u32>(32, 120);
+}
+
+/// Hulls of more points than 16 bits promise, few of which are vertices: both widths of words have the same graph, and climbing it is as good as a scan (tried
+/// of some, which costs more than the graph).
+#[test]
+fn any_number_of_points_up_to_what_words_can_number() {
+    let mut dice = Dice::new(33);
+    let mut memory = Memory::new::<f32, 3>(4, 65_535);
+    let mut solver = memory.solver::<f32, 3>();
+    let (mut words, mut wide) = (vec![0; graph_len(65_535)], vec![0; large_graph_len(100_000)]);
+    let mut facets = vec![HullFacet::EMPTY; hull_facets(100_000)];
+    let mut beyond = 0;
+    for case in 0..100 {
+        let count = match case % 8 {
+            0 => dice.pick(&[26_214, 26_215, 30_000, 30_001, 65_533, 65_534, 65_535, 65_536, 100_000]),
+            1 => 65_535 + dice.below(1000),
+            _ => 26_215 + dice.below(8000),
+        };
+        // A few random points, and others between them: deep inside (which is cheap), or nearly as far out.
+        let inside = if case % 25 == 24 { 0.99 } else { 0.1 };
+        let few = unit_cloud(&mut dice, case / 2 % 2, 12 + case % 20);
+        let between = |dice: &mut Dice| {
+            let [p, q] = [0; 2].map(|_| few[dice.below(few.len())]);
+            let t = dice.unit();
+            [0, 1, 2].map(|i| (p[i] + t * (q[i] - p[i])) * inside)
+        };
+        let mut points: Vec<_> = (few.len()..count).map(|_| between(&mut dice).map(|x| x as f32)).collect();
+        for p in &few {
+            points.insert(dice.below(points.len()), p.map(|x| x as f32));
+        }
+        let large = prepare_hull(&points, &mut wide, &mut facets, None).unwrap();
+        assert!(case % 4 > 0 || worst_climb(&points, large, &mut dice, 1) <= 1.0, "{case} {count}");
+        let small = solver.prepare_hull(&points, &mut words, None);
+        if count < 65_535 {
+            let small = small.unwrap();
+            let same =
+                |i: u32| small.neighbors(i as u16).iter().map(|&v| u32::from(v)).eq(large.neighbors(i).iter().copied());
+            assert!((0..count as u32).all(same), "{case} {count}");
+        } else {
+            assert_eq!(small.unwrap_err(), GraphError::Points, "{case} {count}");
+            beyond += 1;
+        }
+    }
+    assert!(beyond >= 12);
+}

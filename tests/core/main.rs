@@ -22,6 +22,7 @@ mod plane;
 mod plans;
 mod polytopes;
 mod regressions;
+mod scales;
 mod shallow;
 mod sharing;
 mod shortcuts;
