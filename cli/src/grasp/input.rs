@@ -467,6 +467,73 @@ mod tests {
         }
     }
 
+    /// All words that are one letter away from this one: a letter left out, doubled, replaced, or two of them exchanged; and other capitals.
+    fn slips(word: &str) -> Vec<String> {
+        let letters: Vec<char> = word.chars().collect();
+        let with = |change: &dyn Fn(&mut Vec<char>)| {
+            let mut letters = letters.clone();
+            change(&mut letters);
+            letters.into_iter().collect::<String>()
+        };
+        let mut slips = vec![word.to_uppercase(), word.to_lowercase()];
+        for i in 0..letters.len() {
+            slips.push(with(&|l| {
+                l.remove(i);
+            }));
+            slips.push(with(&|l| l.insert(i, l[i])));
+            slips.extend(['e', 'x'].map(|other| with(&|l| l[i] = other)));
+            slips.push(with(&|l| {
+                l[i] = if l[i].is_uppercase() { l[i].to_ascii_lowercase() } else { l[i].to_ascii_uppercase() }
+            }));
+        }
+        // (Of two letters, these are both changed: no name is near.)
+        slips.extend((1..letters.len()).filter(|_| letters.len() > 2).map(|i| with(&|l| l.swap(i - 1, i))));
+        slips
+    }
+
+    /// Every field of every object, written with one slip: an error at its place that offers the field, or another one that is as near.
+    #[test]
+    fn every_slip_of_every_field_is_told() {
+        let grasp = |key: &str| BARE.replacen('{', &format!("{{\"{key}\": null, "), 1);
+        let contact = |key: &str| BARE.replacen("\"mu\": 0.5", &format!("\"mu\": 0.5, \"{key}\": null"), 1);
+        let reference = |key: &str| {
+            let refs =
+                format!(r#"}}], "refs": [{{"set": "W", "norm": "L1", "Q": {{"type": "ball"}}, "{key}": null}}]}}"#);
+            BARE.replacen("}]}", &refs, 1)
+        };
+        let unit = |key: &str| {
+            reference("d").replacen(r#"{"type": "ball"}"#, &format!(r#"{{"type": "ball", "{key}": 1}}"#), 1)
+        };
+        let file = |key: &str| format!(r#"{{"instances": [{BARE}], "{key}": null}}"#);
+        let q: [&[&str]; 2] = [&["type", "radius", "S", "space"], &["description", "note", "notes"]];
+        type Text<'a> = &'a dyn Fn(&str) -> String;
+        let objects: [(&str, [&[&str]; 2], Text); 5] = [
+            ("grasp 0", GRASP, &grasp),
+            ("grasp 0, contact 0", CONTACT, &contact),
+            ("grasp 0, ref 0", REFERENCE, &reference),
+            ("grasp 0, ref 0, Q", q, &unit),
+            ("the file", FILE, &file),
+        ];
+        let mut told = 0;
+        for (at, [fields, notes], text) in objects {
+            for field in fields {
+                let unknown = |slip: &String| !fields.contains(&slip.as_str()) && !notes.contains(&slip.as_str());
+                for slip in slips(field).into_iter().filter(unknown) {
+                    let says = refusal(&text(&slip));
+                    let (place, hint) = says.split_once(": is not known here; did you mean ").unwrap_or((&says, ""));
+                    assert_eq!(place, format!("{at}, {slip}"), "{says}");
+                    let offered = hint.split_once('?').unwrap_or_default().0;
+                    // Capitals do not count; an exchange of two letters is two changes, so that another name may be as near.
+                    let near = |name: &str| slips(&name.to_lowercase()).contains(&slip.to_lowercase());
+                    let same = offered == *field || fields.contains(&offered) && (near(offered) || field.len() < 4);
+                    assert!(same, "{field} as {slip}: {says}");
+                    told += 1;
+                }
+            }
+        }
+        assert!(told > 500, "{told}");
+    }
+
     /// Notes, capitals, and the words of the shared data.
     #[test]
     fn what_is_known_is_read() {
