@@ -1,8 +1,10 @@
 /* Bodies in the plane, half spaces and hulls of two bodies through the C interface: closed forms, witnesses, bad arguments, in both
- * scalar types. The file includes itself once for each. */
+ * scalar types. Then bodies of any size, far away, on wide floors, and around one axis: random ones whose depth is a sum of a few numbers. The file includes
+ * itself once for each. */
 #ifndef REAL
 
 #include "qdist.h"
+#include "dice.h"
 #include "test.h"
 
 #include <float.h>
@@ -18,18 +20,24 @@
 #define WORDS QDIST_WORKSPACE_WORDS_F64
 #define WIDTH 1e-6
 #define MOST DBL_MAX
+#define PROMISED 140
+#define DECADES 308
 #include "bodies.c"
 #undef REAL
 #undef SUFFIX
 #undef WORDS
 #undef WIDTH
 #undef MOST
+#undef PROMISED
+#undef DECADES
 
 #define REAL float
 #define SUFFIX _f32
 #define WORDS QDIST_WORKSPACE_WORDS_F32
 #define WIDTH 1e-4
 #define MOST FLT_MAX
+#define PROMISED 17
+#define DECADES 38
 #include "bodies.c"
 
 int main(void) {
@@ -393,6 +401,203 @@ static void Q(shallow)(void) {
     CHECK(depth.outcome == QDIST_CONVERGED && depth.lower > 9.99e-4 && depth.upper < 1.001e-3);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ random bodies */
+
+/* The shapes that the bodies of a pair are made of. */
+static struct {
+    Q(qdist_box) box;
+    Q(qdist_sphere) ball;
+    Q(qdist_ellipsoid) egg;
+    Q(qdist_cylinder) cylinder;
+    Q(qdist_capsule) capsule;
+} Q(shapes)[2];
+
+/* A body that reaches `half` along x, at a point of the axis, and at least half as far across. Two of them, t apart along x, have the depth S - t, where S
+ * is the sum of their halves and t > 3/4 S: a direction of cosine c to x has a height of at least S sqrt(1/4 + 3/4 c^2) - t c, which falls towards c = 1. */
+static qdist_status Q(along_x)(Q(body) *body, int which, REAL half) {
+    const REAL p = half * (REAL)between(0.5, 2), q = half * (REAL)between(0.5, 2);
+    const Q(qdist_box) box = {{half, p, q}};
+    const Q(qdist_ellipsoid) egg = {{half, p, q}};
+    Q(shapes)[which].box = box, Q(shapes)[which].egg = egg;
+    Q(shapes)[which].ball.radius = Q(shapes)[which].cylinder.radius = Q(shapes)[which].capsule.radius = half;
+    Q(shapes)[which].cylinder.half_height = Q(shapes)[which].capsule.half_height = p;
+    switch (below(5)) {
+    case 0: return Q(qdist_body_box)(body, &Q(shapes)[which].box);
+    case 1: return Q(qdist_body_sphere)(body, &Q(shapes)[which].ball);
+    case 2: return Q(qdist_body_ellipsoid)(body, &Q(shapes)[which].egg);
+    case 3: return Q(qdist_body_cylinder)(body, &Q(shapes)[which].cylinder);
+    default: return Q(qdist_body_capsule)(body, &Q(shapes)[which].capsule);
+    }
+}
+
+static int Q(finite)(const Q(depth) *depth) {
+    double sum = fabs((double)depth->lower) / MOST + fabs((double)depth->upper) / MOST;
+    for (int i = 0; i < 3; ++i) {
+        sum += fabs((double)depth->normal[i]);
+        sum += (fabs((double)depth->point_a[i]) + fabs((double)depth->point_b[i])) / MOST;
+    }
+    return sum < 20;
+}
+
+/* Any size that the header promises, from one end to the other: the right depth, converged. */
+static void Q(sizes)(void) {
+    for (int k = 0; k < 150; ++k) {
+        const double size = k < 10 ? pow(10, k % 2 ? -PROMISED : PROMISED) : decade(-PROMISED, PROMISED);
+        const REAL p = (REAL)(size * between(0.5, 1)), q = (REAL)(size * between(0.5, 1));
+        const REAL at = (REAL)((double)p + (double)q + size * between(-0.1, 0.05));
+        const long double truth = (long double)p + (long double)q - (long double)at;
+        Q(body) a, b;
+        Q(depth) depth;
+        CHECK(Q(along_x)(&a, 0, p) == QDIST_OK && Q(along_x)(&b, 1, q) == QDIST_OK);
+        b.translation[0] = at;
+        depth = Q(in_space)(&a, &b);
+        CHECK(depth.lower <= truth && truth <= depth.upper && Q(finite)(&depth));
+        CHECK(depth.upper - depth.lower <= (REAL)(WIDTH * size) && fabs(depth.normal[0] - 1) < 1e-5);
+        CHECK(depth.outcome == (truth > 0 ? QDIST_CONVERGED : QDIST_SEPARATED) || sizeof(REAL) == sizeof(float));
+        CHECK(depth.outcome != QDIST_DEGENERATE && depth.outcome != QDIST_SUPPORT_FAILED);
+    }
+}
+
+/* Sizes and places up to the ends of the format: a status that says so, or a true answer. */
+static void Q(ends_of_the_format)(void) {
+    int answered = 0, refused = 0;
+    for (int k = 0; k < 300; ++k) {
+        const double size = decade(k % 2 ? -PROMISED : PROMISED, k % 2 ? PROMISED : DECADES - 0.5), far = decade(PROMISED, DECADES + 0.2);
+        const REAL p = (REAL)(size * between(0.5, 1)), q = (REAL)(size * between(0.5, 1));
+        Q(body) a, b;
+        Q(depth) depth;
+        const qdist_status one = Q(along_x)(&a, 0, p), two = Q(along_x)(&b, 1, q);
+        CHECK((one == QDIST_OK || one == QDIST_ERROR_NONFINITE) && (two == QDIST_OK || two == QDIST_ERROR_NONFINITE));
+        if (one != QDIST_OK || two != QDIST_OK) {
+            ++refused;
+            continue;
+        }
+        a.translation[0] = (REAL)(k % 3 == 0 ? 0 : -far);
+        b.translation[0] = (REAL)(k % 3 == 2 ? -far : far * 0.75);
+        memset(&depth, 0, sizeof depth);
+        depth.struct_size = sizeof depth;
+        const qdist_status status = Q(qdist_depth3)(Q(solver3), &a, &b, NULL, &depth);
+        const long double truth = (long double)p + (long double)q - ((long double)b.translation[0] - (long double)a.translation[0]);
+        CHECK(status == QDIST_OK || status == QDIST_ERROR_NONFINITE);
+        if (status != QDIST_OK) {
+            ++refused;
+            continue;
+        }
+        ++answered;
+        CHECK(Q(finite)(&depth) && depth.lower <= depth.upper);
+        if (k % 3 != 2 && far > 8 * size) {
+            CHECK(depth.lower <= truth && truth <= depth.upper && depth.outcome == QDIST_SEPARATED);
+            CHECK(depth.upper - depth.lower <= 1e-5 * -truth);
+        }
+    }
+    CHECK(answered >= 100 && refused >= 10);
+}
+
+/* A cube by its corners, far away in its own frame and brought back by its pose: witnesses are as accurate as the bracket. */
+static void Q(hulls_far_from_their_frame)(void) {
+    const Q(qdist_box) cube = {{1, 1, 1}};
+    const double near = sizeof(REAL) == 8 ? 1e-12 : 1e-4;
+    for (int k = 0; k < 100; ++k) {
+        REAL corners[24];
+        const Q(qdist_points) list = {corners, 8, 3};
+        Q(body) a, b;
+        Q(depth) depth;
+        double far[3], at[3];
+        for (int i = 0; i < 3; ++i) far[i] = floor(decade(2, sizeof(REAL) == 8 ? 9 : 6)) * (below(2) ? 1 : -1);
+        for (int i = 0; i < 24; ++i) corners[i] = (REAL)(far[i % 3] + 2 * (i / 3 >> i % 3 & 1));
+        CHECK(Q(qdist_body_points)(&a, &list) == QDIST_OK && Q(qdist_body_box)(&b, &cube) == QDIST_OK && a.spread > 0);
+        at[0] = 1.25 + below(32) / 64.0, at[1] = below(32) / 64.0 - 0.25, at[2] = -0.5;
+        for (int i = 0; i < 3; ++i) a.translation[i] = (REAL)(-far[i] - 1), b.translation[i] = (REAL)at[i];
+        depth = Q(in_space)(&a, &b);
+        CHECK(depth.lower <= 2 - at[0] && 2 - at[0] <= depth.upper && depth.upper - depth.lower <= near);
+        for (int i = 0; i < 3; ++i) {
+            CHECK(fabs(depth.point_a[i]) <= 1 + near && fabs(depth.point_b[i] - at[i]) <= 1 + near);
+            CHECK(fabs(depth.point_a[i] - depth.point_b[i] - (i == 0 ? 2 - at[0] : 0)) <= near);
+        }
+    }
+}
+
+/* Boxes of half extents l, l and h in any order of axes, and what stands in them: known to a share of the depth, not of l. */
+static void Q(wide_floors)(void) {
+    for (int k = 0; k < 100; ++k) {
+        const double wide = sizeof(REAL) == 8 ? 1e6 : 1;
+        const int given = k < 4; /* a cube of 2 cm, 1 mm deep */
+        const double l = (given ? pow(10, k) : decade(0.5, 3)) * wide, h = given ? 0.1 : between(0.05, 0.3), size = given ? 0.01 : between(0.005, 0.05);
+        const int up = k % 3;
+        Q(qdist_box) floor, cube = {{(REAL)size, (REAL)size, (REAL)size}};
+        Q(body) a, b;
+        Q(depth) depth;
+        for (int i = 0; i < 3; ++i) floor.half[i] = (REAL)(i == up ? h : l);
+        CHECK(Q(qdist_body_box)(&a, &floor) == QDIST_OK && Q(qdist_body_box)(&b, &cube) == QDIST_OK);
+        for (int i = 0; i < 3; ++i) b.translation[i] = (REAL)(i == up ? h + size - (given ? 1e-3 : between(1e-3, 4e-3)) : between(-0.6, 0.6) * l);
+        const double truth = (double)((long double)floor.half[up] + (long double)cube.half[0] - (long double)b.translation[up]);
+        depth = k % 2 ? Q(in_space)(&b, &a) : Q(in_space)(&a, &b);
+        CHECK(depth.lower <= truth && truth <= depth.upper && depth.upper - depth.lower < 0.01 * truth + (l < 10 * h ? 4e-5 : 0));
+        CHECK(fabs(fabs(depth.normal[up]) - 1) < 1e-5);
+    }
+}
+
+/* A wide triangle and a small box through it: no such pair is flat, and d is the box's half extent less the distance of its centre. */
+static void Q(wide_triangles)(void) {
+    for (int k = 0; k < 100; ++k) {
+        const double l = k ? decade(0, 5) : 1e4, size = k ? between(0.01, 1) : 0.1;
+        const int up = k % 3, x = (up + 1) % 3, y = (up + 2) % 3;
+        const Q(qdist_box) box = {{(REAL)size, (REAL)size, (REAL)size}};
+        REAL corners[9] = {0};
+        const Q(qdist_points) list = {corners, 3, 3};
+        Q(body) a, b;
+        Q(depth) depth;
+        corners[x] = corners[y] = corners[3 + y] = (REAL)-l, corners[3 + x] = corners[6 + y] = (REAL)l;
+        CHECK(Q(qdist_body_points)(&a, &list) == QDIST_OK && Q(qdist_body_box)(&b, &box) == QDIST_OK);
+        b.translation[x] = (REAL)(0.1 * l), b.translation[y] = (REAL)(-0.5 * l), b.translation[up] = (REAL)(k ? size * between(-0.9, 0.9) : 0.05);
+        const double truth = (double)((long double)box.half[0] - fabsl((long double)b.translation[up]));
+        depth = k % 2 ? Q(in_space)(&b, &a) : Q(in_space)(&a, &b);
+        CHECK(depth.lower <= truth && truth <= depth.upper && depth.upper - depth.lower < 1e-4 * size && depth.outcome != QDIST_DEGENERATE);
+    }
+}
+
+/* Arcs of minimisers, in the memory of README's table: a corner on the axis of a cylinder, cylinders about nearly the same axis, equal ellipsoids. (Float
+ * may fill that memory before it is as narrow as asked for.) */
+static void Q(arcs)(void) {
+    static uint64_t memory[WORDS(3, 64, 128)];
+    qdist_solver *const usual = Q(solver3);
+    const int exact = sizeof(REAL) == 8;
+    CHECK(Q(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &Q(solver3)) == QDIST_OK);
+    for (int k = 0; k < 100; ++k) {
+        const REAL size = (REAL)(k ? between(1, 3) : 1), corners[12] = {0, 0, 0, size, 0, 0, 0, size, 0, 0, 0, size};
+        const Q(qdist_points) list = {corners, 4, 3};
+        const Q(qdist_cylinder) post = {(REAL)(k ? between(0.05, 0.2) : 0.1), (REAL)(k ? between(0.2, 0.4) : 0.2)};
+        const Q(qdist_cylinder) outer = {1, 1}, inner = {(REAL)0.99, (REAL)1.5};
+        const Q(qdist_ellipsoid) egg = {{(REAL)(k ? between(0.1, 2) : 0.5), (REAL)(k ? between(0.1, 2) : 0.7), (REAL)(k ? between(0.1, 2) : 0.9)}};
+        const double off = k ? decade(-14, -3) : 0, least = fmin(egg.semi_axes[0], fmin(egg.semi_axes[1], egg.semi_axes[2]));
+        const double round = exact ? 1e-15 : 1e-6;
+        Q(body) a, b;
+        Q(depth) depth;
+        CHECK(Q(qdist_body_points)(&a, &list) == QDIST_OK && Q(qdist_body_cylinder)(&b, &post) == QDIST_OK);
+        depth = k % 2 ? Q(in_space)(&b, &a) : Q(in_space)(&a, &b);
+        CHECK(depth.lower <= post.radius && post.radius <= depth.upper && depth.upper - depth.lower <= (exact ? WIDTH : 2e-3) * depth.upper);
+        CHECK(depth.outcome == QDIST_CONVERGED || !exact);
+
+        /* Beside each other, then tilted: the plane across one axis cuts a disc of its own radius out of the other. */
+        CHECK(Q(qdist_body_cylinder)(&a, &outer) == QDIST_OK && Q(qdist_body_cylinder)(&b, &inner) == QDIST_OK);
+        for (int tilted = 0; tilted < 2; ++tilted) {
+            const double truth = (double)inner.radius + 1 - (tilted ? 0 : (double)(REAL)off);
+            b.translation[0] = (REAL)(tilted ? 0 : off);
+            b.rotation[4] = b.rotation[8] = (REAL)(tilted ? cos(off) : 1);
+            b.rotation[7] = (REAL)(tilted ? sin(off) : 0), b.rotation[5] = -b.rotation[7];
+            depth = k % 2 ? Q(in_space)(&b, &a) : Q(in_space)(&a, &b);
+            CHECK(depth.lower <= truth + round && truth - round <= depth.upper && depth.upper - depth.lower <= 1e-4);
+            CHECK(depth.outcome == QDIST_CONVERGED || !exact);
+        }
+
+        CHECK(Q(qdist_body_ellipsoid)(&a, &egg) == QDIST_OK && Q(qdist_body_ellipsoid)(&b, &egg) == QDIST_OK);
+        depth = Q(in_space)(&a, &b);
+        CHECK(depth.lower <= 2 * least && 2 * least <= depth.upper && depth.upper - depth.lower <= (exact ? WIDTH : 1e-2) * least);
+        CHECK(depth.outcome == QDIST_CONVERGED || !exact);
+    }
+    Q(solver3) = usual;
+}
+
 static void JOIN(bodies, SUFFIX)(void) {
     CHECK(Q(qdist_solver_init)(Q(memory2), sizeof Q(memory2), 2, 32, 32, &Q(solver2)) == QDIST_OK);
     CHECK(Q(qdist_solver_init)(Q(memory3), sizeof Q(memory3), 3, 128, 256, &Q(solver3)) == QDIST_OK);
@@ -405,6 +610,12 @@ static void JOIN(bodies, SUFFIX)(void) {
     Q(joined_sets)();
     Q(ellipsoids_from_elsewhere)();
     Q(shallow)();
+    Q(sizes)();
+    Q(ends_of_the_format)();
+    Q(hulls_far_from_their_frame)();
+    Q(wide_floors)();
+    Q(wide_triangles)();
+    Q(arcs)();
 }
 
 #endif

@@ -2,7 +2,8 @@
  * zero. Against closed forms, and against the depth of random boxes in extended precision. The file includes itself once for each scalar type. */
 #ifndef REAL
 
-#include "qdist.h"
+#include "qdist_grasp.h"
+#include "dice.h"
 #include "test.h"
 
 #include <fenv.h>
@@ -45,19 +46,12 @@ static void leave(void) {
     flush(0);
 }
 
-static uint64_t state;
-/* In [-1, 1). */
-static double dice(void) {
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (double)(int64_t)(state ^ state >> 31) / 9223372036854775808.0;
-}
-
 /* A test once in each environment. */
 static void everywhere(void (*test)(void)) {
     for (unsigned i = 0; i < sizeof MODES / sizeof *MODES; ++i) {
         for (flushing = 0; flushing <= CAN_FLUSH; ++flushing) {
             mode = MODES[i];
-            state = 1;
+            dice_state = 1;
             test();
         }
     }
@@ -83,6 +77,14 @@ int main(void) {
     everywhere(units_f32);
     everywhere(random_boxes_f64);
     everywhere(random_boxes_f32);
+    everywhere(hulls_and_half_spaces_f64);
+    everywhere(hulls_and_half_spaces_f32);
+    everywhere(in_the_plane_f64);
+    everywhere(in_the_plane_f32);
+    everywhere(subnormal_f64);
+    everywhere(subnormal_f32);
+    everywhere(grasps_f64);
+    everywhere(grasps_f32);
     return finish("environment");
 }
 
@@ -277,6 +279,158 @@ static void S(random_boxes)(void) {
         CHECK(depth.lower <= truth);
         CHECK(depth.upper >= truth || truth < 0);
         if (depth.lower > truth || (depth.upper < truth && truth >= 0)) say("boxes", depth.lower, truth, depth.upper);
+    }
+}
+
+/* Boxes by a prepared hull of their corners and points inside, beside each other or over a half space; capsules as hulls of two balls. */
+static void S(hulls_and_half_spaces)(void) {
+    for (int i = 0; i < 60; ++i) {
+        enum { COUNT = 20 };
+        REAL points[3 * COUNT], half[2][3];
+        uint16_t graph[QDIST_HULL_GRAPH_LEN(COUNT)];
+        const REAL ground = (REAL)dice();
+        const S(qdist_half_space) floor = {{0, 0, 1}, ground};
+        const S(qdist_sphere) ball = {(REAL)(1 + 0.5 * dice())};
+        S(qdist_hull) hull;
+        S(qdist_box) box;
+        S(qdist_join) join;
+        S(qdist_body) a, b, c, tip, tube;
+        qdist_solver *solver;
+        wide truth;
+        for (int k = 0; k < 3; ++k) half[0][k] = (REAL)(1 + 0.5 * dice()), box.half[k] = half[1][k] = (REAL)(1 + 0.5 * dice());
+        for (int k = 0; k < 3 * COUNT; ++k) points[k] = half[0][k % 3] * (k < 24 ? k / 3 >> k % 3 & 1 ? 1 : -1 : (REAL)(0.9 * dice()));
+        enter();
+        qdist_status status = S(qdist_solver_init)(memory, sizeof memory, 3, 4, 2 * COUNT, &solver);
+        status |= S(qdist_hull_prepare)(&hull, solver, points, COUNT, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(COUNT));
+        status |= S(qdist_body_hull)(&a, &hull) | S(qdist_body_box)(&b, &box) | S(qdist_body_half_space)(&c, &floor);
+        leave();
+        CHECK(status == QDIST_OK);
+        b.translation[0] = (REAL)(2 + 0.5 * dice());
+        truth = (wide)half[0][0] + (wide)half[1][0] - (wide)b.translation[0];
+        /* (The others are at least 1.) */
+        if (truth < 1) S(holds)("hull", &a, &b, truth, 2);
+        a.translation[2] = (REAL)(2 * dice());
+        S(holds)("half space", &a, &c, (wide)ground + (wide)half[0][2] - (wide)a.translation[2], 3);
+        enter();
+        status = S(qdist_body_sphere)(&tip, &ball) | S(qdist_body_sphere)(&b, &ball);
+        leave();
+        tip.translation[1] = 4;
+        join.a = &tip, join.b = &b;
+        enter();
+        status |= S(qdist_body_join)(&tube, &join) | S(qdist_body_sphere)(&c, &ball);
+        leave();
+        CHECK(status == QDIST_OK);
+        c.translation[1] = (REAL)(2 + dice()), c.translation[0] = (REAL)(2 + dice());
+        S(holds)("join", &tube, &c, 2 * (wide)ball.radius - (wide)c.translation[0], 2);
+    }
+}
+
+/* Discs, boxes, capsules and half planes. */
+static void S(in_the_plane)(void) {
+    for (int i = 0; i < 60; ++i) {
+        const REAL p = (REAL)(1 + 0.5 * dice()), q = (REAL)(1 + 0.5 * dice()), at = (REAL)(2 + dice());
+        const S(qdist_disc) disc1 = {p}, disc2 = {q};
+        const S(qdist_box2) box1 = {{p, 3}}, box2 = {{q, 3}};
+        const S(qdist_capsule2) tube1 = {p, 3}, tube2 = {q, 3};
+        const S(qdist_half_plane) side = {{-2, 0}, -2 * at};
+        for (int kind = 0; kind < 4; ++kind) {
+            S(qdist_body2) a, b;
+            S(qdist_depth) depth;
+            qdist_solver *solver;
+            const wide truth = (wide)p + (kind == 3 ? 0 : (wide)q) - (wide)at;
+            memset(&depth, 0, sizeof depth);
+            depth.struct_size = sizeof depth;
+            enter();
+            qdist_status status = S(qdist_solver_init)(memory, sizeof memory, 2, 32, 32, &solver);
+            status |= kind == 0   ? S(qdist_body2_disc)(&a, &disc1) | S(qdist_body2_disc)(&b, &disc2)
+                      : kind == 1 ? S(qdist_body2_box)(&a, &box1) | S(qdist_body2_box)(&b, &box2)
+                      : kind == 2 ? S(qdist_body2_capsule)(&a, &tube1) | S(qdist_body2_capsule)(&b, &tube2)
+                                  : S(qdist_body2_disc)(&a, &disc1) | S(qdist_body2_half_plane)(&b, &side);
+            leave();
+            if (kind < 3) b.translation[0] = at;
+            enter();
+            status |= S(qdist_depth2)(solver, &a, &b, NULL, &depth);
+            leave();
+            CHECK(status == QDIST_OK && depth.upper - depth.lower <= (sizeof(REAL) == 8 ? 1e-5L : 1e-3L));
+            CHECK(depth.lower <= truth && truth <= depth.upper);
+            if (!(depth.lower <= truth && truth <= depth.upper)) say("plane", depth.lower, truth, depth.upper);
+        }
+    }
+}
+
+/* Sizes and overlaps down to the smallest numbers, which may be flushed to zero: no false bracket. (Sizes of a few dozen of the smallest number are left out:
+ * squares of what they become in the library's own unit are zero.) */
+static void S(subnormal)(void) {
+    const double most = sizeof(REAL) == 8 ? -140 : -17, least = sizeof(REAL) == 8 ? -321 : -43;
+    for (int i = 0; i < 150; ++i) {
+        const double size = pow(10, least + (most - least) * 0.5 * (1 + dice())), apart = pow(10, least + (most - least) * 0.5 * (1 + dice()));
+        const REAL p = (REAL)size, q = (REAL)(size * (1 + 0.5 * dice())), at = (REAL)(i % 2 ? (double)p + (double)q + (i % 4 < 2 ? apart : -apart) : apart);
+        const S(qdist_sphere) ball1 = {p}, ball2 = {q};
+        const S(qdist_box) box1 = {{p, 3 * p, 3 * p}}, box2 = {{q, 3 * p, 3 * p}};
+        for (int kind = 0; kind < 2; ++kind) {
+            S(qdist_body) a, b;
+            S(qdist_depth) depth;
+            qdist_solver *solver;
+            memset(&depth, 0, sizeof depth);
+            depth.struct_size = sizeof depth;
+            enter();
+            qdist_status status = S(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &solver);
+            status |= kind ? S(qdist_body_box)(&a, &box1) | S(qdist_body_box)(&b, &box2) : S(qdist_body_sphere)(&a, &ball1) | S(qdist_body_sphere)(&b, &ball2);
+            leave();
+            b.translation[0] = at;
+            enter();
+            if (status == QDIST_OK) status = S(qdist_depth3)(solver, &a, &b, NULL, &depth);
+            leave();
+            CHECK(status == QDIST_OK);
+            /* Where numbers are flushed, those of the arguments may be, too: each by as much as the smallest normal one. */
+            const wide truth = (wide)p + (wide)q - (wide)(at < 0 ? -at : at), flushed = flushing ? 16 * (wide)(sizeof(REAL) == 8 ? 2.3e-308 : 1.2e-38) : 0;
+            const int deep = kind && truth > 3 * (wide)p; /* then another way out is shorter */
+            CHECK(deep || (depth.lower <= truth + flushed && truth - flushed <= depth.upper));
+            if (!deep && !(depth.lower <= truth + flushed && truth - flushed <= depth.upper)) say("small", depth.lower, truth, depth.upper);
+        }
+    }
+}
+
+/* Two soft fingers pinch a load: the share of their caps in closed form; closed, or open without torsion; d is 0 of fingers that press to one side. */
+static void S(grasps)(void) {
+    for (int i = 0; i < 40; ++i) {
+        const S(qdist_wrench_frame) frame = {{0, 0, 0}, 1};
+        const REAL mu = (REAL)(0.6 + 0.4 * dice()), cap = (REAL)(5 + 4 * dice()), weight = (REAL)(1 + 0.9 * dice());
+        const REAL external[6] = {0, 0, -weight, 0, 0, 0};
+        S(qdist_contact) contacts[2];
+        S(qdist_primitive) primitives[2];
+        const S(qdist_wrenches) wrenches = {primitives, 2, QDIST_LINF};
+        S(qdist_forces) forces;
+        S(qdist_closure) closure;
+        S(qdist_result) result;
+        S(qdist_set) set;
+        qdist_solver *solver;
+        REAL shares[12];
+        for (int kind = 0; kind < 3; ++kind) { /* closed, without torsion, to one side */
+            memset(contacts, 0, sizeof contacts), memset(&forces, 0, sizeof forces), memset(&closure, 0, sizeof closure);
+            memset(&result, 0, sizeof result);
+            forces.struct_size = sizeof forces, closure.struct_size = sizeof closure, result.struct_size = sizeof result;
+            for (int k = 0; k < 2; ++k) {
+                contacts[k].position[0] = k ? 1 : -1, contacts[k].normal[0] = k && kind < 2 ? -1 : 1;
+                contacts[k].friction = kind == 1 ? QDIST_HARD : QDIST_SOFT, contacts[k].mu = mu, contacts[k].force_cap = cap;
+                contacts[k].mus = (REAL)(kind == 1 ? 0 : 0.1);
+            }
+            enter();
+            qdist_status status = S(qdist_primitives)(contacts, 2, &frame, 0, 0, primitives, NULL) | S(qdist_set_wrenches)(&set, &wrenches);
+            status |= S(qdist_solver_init)(memory, sizeof memory, 6, 64, 2048, &solver);
+            status |= S(qdist_force_closure)(solver, &set, NULL, &closure);
+            status |= S(qdist_contact_forces)(&wrenches, NULL, external, NULL, shares, &forces);
+            if (kind == 2) status |= S(qdist_solve6)(solver, &set, NULL, NULL, &result);
+            leave();
+            CHECK(status == QDIST_OK);
+            CHECK(closure.verdict == (kind ? QDIST_CLOSURE_OPEN : QDIST_CLOSURE_CLOSED));
+            if (kind < 2) {
+                const wide share = (wide)weight / (2 * (wide)mu * (wide)cap), slack = sizeof(REAL) == 8 ? 1e-8L : 1e-3L;
+                CHECK(forces.lower <= share * (1 + slack) && share * (1 - slack) <= forces.upper && forces.upper <= share * (sizeof(REAL) == 8 ? 1.0001L : 1.02L));
+            } else {
+                CHECK(result.lower == 0 && result.upper >= 0 && result.upper <= 1e-3);
+            }
+        }
     }
 }
 #endif

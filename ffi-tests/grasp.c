@@ -3,8 +3,10 @@
 #ifndef REAL
 
 #include "qdist_grasp.h"
+#include "dice.h"
 #include "test.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -519,6 +521,150 @@ static void Q(open_grasp)(qdist_solver *solver) {
     }
 }
 
+/* A contact at p with the normal n. */
+static Q(qdist_contact) Q(touch)(const double *p, const double *n, qdist_friction friction, double mu, double mus) {
+    Q(qdist_contact) c;
+    double length = 0;
+    memset(&c, 0, sizeof c);
+    for (int i = 0; i < 3; ++i) length += n[i] * n[i];
+    for (int i = 0; i < 3; ++i) c.position[i] = (REAL)p[i], c.normal[i] = (REAL)(n[i] / sqrt(length));
+    c.friction = friction, c.mu = (REAL)mu, c.mus = (REAL)mus, c.force_cap = 1;
+    return c;
+}
+
+/* Fingers that all press to one side: d is 0, known in no more than its proof costs, whatever Q is; and a wrench that the grasp resists is known as well as
+ * by the least forces that do. */
+static void Q(open_grasps)(qdist_solver *solver) {
+    const Q(qdist_ellipsoid_unit) egg = {{1, 2, 0.5, 1, 1, 3}, NULL, 6};
+    const Q(qdist_cross_unit) cross = {{1, 2, 0.5, 1, 1, 3}, 6};
+    const Q(qdist_box_unit) cube = {{1, 2, 0.5, 1, 1, 3}, 6};
+    int narrow = 0, met = 0;
+    for (int k = 0; k < 60; ++k) {
+        const uint32_t count = 2 + below(5);
+        Q(qdist_contact) contacts[6];
+        Q(qdist_primitive) primitives[6];
+        const Q(qdist_wrenches) w = {primitives, count, k % 2 ? QDIST_L1 : QDIST_LINF};
+        Q(qdist_segment_unit) ray = {{0}, 6};
+        Q(qdist_unit) units[4];
+        Q(qdist_result) result;
+        Q(qdist_set) set;
+        Q(qdist_forces) forces;
+        Q(qdist_options) options;
+        REAL external[6], shares[36];
+        for (uint32_t i = 0; i < count; ++i) {
+            const double n[3] = {1, 0.3 * dice(), 0.3 * dice()}, p[3] = {dice(), dice(), dice()};
+            contacts[i] = Q(touch)(p, n, below(2) ? QDIST_SOFT : QDIST_HARD, between(0.1, 1), 0);
+            if (contacts[i].friction == QDIST_SOFT) contacts[i].mus = (REAL)between(0.01, 0.2);
+        }
+        CHECK(Q(qdist_primitives)(contacts, count, &Q(frame), 0, 0, primitives, NULL) == QDIST_OK);
+        CHECK(Q(qdist_set_wrenches)(&set, &w) == QDIST_OK && Q(qdist_unit_ball)(&units[0], 1) == QDIST_OK);
+        CHECK(Q(qdist_unit_ellipsoid)(&units[1], &egg) == QDIST_OK && Q(qdist_unit_cross)(&units[2], &cross) == QDIST_OK);
+        CHECK(Q(qdist_unit_box)(&units[3], &cube) == QDIST_OK);
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        for (int q = 0; q < 4; ++q) {
+            CHECK(Q(qdist_solve6)(solver, &set, &units[q], NULL, &result) == QDIST_OK);
+            CHECK(result.lower == 0 && result.upper >= 0 && result.upper < 20 * WIDTH && result.support_calls <= 100);
+            CHECK(result.outcome == QDIST_TOUCHING || result.outcome == QDIST_DEGENERATE);
+        }
+        /* Half the sum of some farthest points is in the set; the way to it, a segment. */
+        for (int j = 0; j < 6; ++j) {
+            double u[6];
+            REAL direction[6], point[6];
+            random_direction(u, 6);
+            for (int i = 0; i < 6; ++i) direction[i] = (REAL)u[i];
+            CHECK(set.support(set.user, direction, point) == 0);
+            for (int i = 0; i < 6; ++i) ray.end[i] += point[i] / 12;
+        }
+        for (int i = 0; i < 6; ++i) external[i] = -ray.end[i];
+        memset(&forces, 0, sizeof forces);
+        forces.struct_size = sizeof forces;
+        CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, shares, &forces) == QDIST_OK);
+        if (Q(qdist_unit_segment)(&units[0], &ray) != QDIST_OK || forces.outcome != QDIST_FORCES_CONVERGED) continue;
+        CHECK(Q(qdist_options_default)(&options) == QDIST_OK);
+        options.max_iterations = sizeof(REAL) == 8 ? 5000 : 300;
+        CHECK(Q(qdist_solve6)(solver, &set, &units[0], &options, &result) == QDIST_OK);
+        /* (Forces may be off by their residual.) */
+        const double slack = 1 + (sizeof(REAL) == 8 ? 1e-6 : 2e-2);
+        CHECK(result.lower <= slack / (double)forces.lower && 1 / (double)forces.upper <= slack * result.upper);
+        CHECK(sizeof(REAL) == 4 || result.outcome != QDIST_ITERATIONS);
+        ++met, narrow += result.upper - result.lower <= WIDTH * result.upper;
+    }
+    CHECK(met >= 40 && (sizeof(REAL) == 4 || narrow >= met * 9 / 10));
+}
+
+/* Hard fingertips on a ring are closed by any friction, and open without; so are two soft ones by their torsion. At any torque scale. */
+static void Q(rings)(qdist_solver *solver) {
+    int undecided = 0;
+    for (int k = 0; k < 120; ++k) {
+        const int pinch = k % 3 == 2, closes = below(2) != 0;
+        const uint32_t count = pinch ? 2 : 3 + below(4);
+        const double mu = closes ? k < 4 ? 0.01 : decade(-3, 0) : 0;
+        const Q(qdist_wrench_frame) tight = {{0, 0, 0}, (REAL)(k < 4 ? 1e-3 : pinch ? 1 : decade(-6, 6))};
+        Q(qdist_contact) contacts[6];
+        Q(qdist_primitive) primitives[6];
+        const Q(qdist_wrenches) w = {primitives, count, k % 2 ? QDIST_LINF : QDIST_L1};
+        Q(qdist_closure) closure;
+        Q(qdist_set) set;
+        for (uint32_t i = 0; i < count; ++i) {
+            const double angle = 6.283185307179586 * i / count, p[3] = {cos(angle), pinch ? 0 : sin(angle), 0};
+            const double n[3] = {pinch ? i ? 1 : -1 : -p[0], -p[1], 0};
+            contacts[i] = pinch ? Q(touch)(p, n, QDIST_SOFT, 0.5, mu) : Q(touch)(p, n, QDIST_HARD, mu, 0);
+        }
+        memset(&closure, 0, sizeof closure);
+        closure.struct_size = sizeof closure;
+        CHECK(Q(qdist_primitives)(contacts, count, &tight, 0, 0, primitives, NULL) == QDIST_OK && Q(qdist_set_wrenches)(&set, &w) == QDIST_OK);
+        CHECK(Q(qdist_force_closure)(solver, &set, NULL, &closure) == QDIST_OK);
+        CHECK(closure.verdict != (closes ? QDIST_CLOSURE_OPEN : QDIST_CLOSURE_CLOSED));
+        CHECK((closure.radius > 0) == (closure.verdict == QDIST_CLOSURE_CLOSED));
+        undecided += closure.verdict == QDIST_CLOSURE_UNDECIDED;
+        CHECK(k >= 4 || closure.verdict != QDIST_CLOSURE_UNDECIDED);
+    }
+    CHECK(undecided <= (sizeof(REAL) == 8 ? 0 : 12));
+}
+
+static int Q(quality)(const Q(qdist_forces) *forces, double largest) {
+    return forces->outcome == QDIST_FORCES_CONVERGED ? 2 : forces->outcome == QDIST_FORCES_NOT_RESISTIBLE ? 1 : forces->upper < largest;
+}
+
+/* Soft fingers on a ring hold a wrench that drifts: memory never costs an answer. */
+static void Q(drifting_wrenches)(void) {
+    const double largest = sizeof(REAL) == 8 ? DBL_MAX : (double)FLT_MAX;
+    uint32_t warm_steps = 0, cold_steps = 0;
+    for (int k = 0; k < 15; ++k) {
+        const uint32_t count = 2 + below(4);
+        const Q(qdist_wrench_frame) tight = {{0, 0, 0}, (REAL)(0.05 * decade(-1, 1.5))};
+        const double spin = below(2) ? 0 : 0.2 * 0.05 / tight.torque_scale, rate = decade(-5, 0);
+        Q(qdist_contact) contacts[6];
+        Q(qdist_primitive) primitives[6];
+        const Q(qdist_wrenches) w = {primitives, count, k % 2 ? QDIST_LINF : QDIST_L1};
+        Q(qdist_force_memory) memory;
+        double start[6], turn[6];
+        for (uint32_t i = 0; i < count; ++i) {
+            const double angle = 6.283185307179586 * i / count + (k % 3 ? 0.3 * dice() : 0);
+            const double n[3] = {-cos(angle), -sin(angle), 0}, p[3] = {-0.05 * n[0], -0.05 * n[1], k % 3 == 2 ? 0.02 * dice() : 0};
+            contacts[i] = Q(touch)(p, n, QDIST_SOFT, between(0.2, 1), 0.005);
+            contacts[i].force_cap = 10;
+        }
+        CHECK(Q(qdist_primitives)(contacts, count, &tight, 0, 0, primitives, NULL) == QDIST_OK);
+        random_direction(start, 6), random_direction(turn, 6);
+        memset(&memory, 0, sizeof memory);
+        for (int tick = 0; tick < 40; ++tick) {
+            REAL external[6], shares[36];
+            Q(qdist_forces) warm, cold;
+            for (int i = 0; i < 6; ++i) external[i] = (REAL)((start[i] + turn[i] * rate * tick) * (i < 3 ? 1 : spin));
+            memset(&warm, 0, sizeof warm), memset(&cold, 0, sizeof cold);
+            warm.struct_size = cold.struct_size = sizeof warm;
+            CHECK(Q(qdist_contact_forces)(&w, &memory, external, NULL, shares, &warm) == QDIST_OK);
+            CHECK(Q(qdist_contact_forces)(&w, NULL, external, NULL, shares, &cold) == QDIST_OK);
+            CHECK(Q(quality)(&warm, largest) >= Q(quality)(&cold, largest));
+            CHECK(warm.upper >= (REAL)largest || cold.upper >= (REAL)largest || (warm.lower <= cold.upper * (REAL)1.02 && cold.lower <= warm.upper * (REAL)1.02));
+            warm_steps += warm.iterations, cold_steps += cold.iterations;
+        }
+    }
+    CHECK(warm_steps < cold_steps);
+}
+
 /* t such that t * end is on the boundary of the pyramids' set. */
 static Q(qdist_result) Q(shoot)(qdist_solver *solver, const Q(qdist_set) *set, double y, double z) {
     Q(qdist_segment_unit) segment = {{0, (REAL)y, (REAL)z, 0, 0, 0}, 6};
@@ -787,6 +933,9 @@ static void Q(grasp)(void) {
     Q(fingers)(solver);
     Q(finger_errors)();
     Q(open_grasp)(solver);
+    Q(open_grasps)(solver);
+    Q(rings)(solver);
+    Q(drifting_wrenches)();
     Q(linearised)(solver);
     Q(linearised_errors)();
     Q(errors)();

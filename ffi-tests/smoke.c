@@ -3,10 +3,12 @@
 #ifndef REAL
 
 #include "qdist.h"
+#include "dice.h"
 #include "test.h"
 
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 #define JOIN_(name, suffix) name##suffix
 #define JOIN(name, suffix) JOIN_(name, suffix)
@@ -691,6 +693,240 @@ static void Q(hulls)(qdist_solver *solver) {
     CHECK(Q(qdist_hull_prepare)(&hull, workspace, points, 3, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(COUNT)) == QDIST_ERROR_FLAT);
 }
 
+/* An octahedron of these half axes, which counts directions that are none. */
+typedef struct {
+    double axes[3];
+    unsigned calls, none;
+} Q(tips);
+
+static int32_t Q(octahedron)(void *user, const REAL *direction, REAL *point) {
+    Q(tips) *tips = user;
+    double best = -1, square = 0;
+    int far = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double height = fabs(direction[k]) * tips->axes[k];
+        square += (double)direction[k] * direction[k];
+        if (height > best) best = height, far = k;
+    }
+    ++tips->calls, tips->none += !(square > 0.25 && square < 4);
+    for (int k = 0; k < 3; ++k) point[k] = (REAL)(k != far ? 0 : direction[k] < 0 ? -tips->axes[k] : tips->axes[k]);
+    return 0;
+}
+
+/* An extent may be stated as loosely as you like: the answer is the same, of numbers, and nothing is asked along 0. */
+static void Q(loose_extents)(qdist_solver *solver) {
+    for (int k = 0; k < 150; ++k) {
+        Q(tips) tips = {{1, 1, 1}, 0, 0};
+        Q(qdist_box_unit) gauge = {{1, 2, 3, 0, 0, 0}, 3};
+        Q(qdist_set) set;
+        Q(qdist_unit) unit;
+        Q(result) result;
+        double sum = 0, numbers = 0;
+        memset(&set, 0, sizeof set);
+        set.support = Q(octahedron), set.user = &tips;
+        set.extent = (REAL)(k == 0 ? 1e15 : k == 1 ? 1e7 : decade(0.5, k % 2 ? 8 : 20));
+        for (int i = 0; i < 3; ++i) {
+            if (k > 1) tips.axes[i] = (REAL)between(0.5, 2), gauge.half[i] = (REAL)between(0.5, 3);
+            sum += (double)gauge.half[i] / tips.axes[i];
+        }
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        CHECK(Q(qdist_unit_box)(&unit, &gauge) == QDIST_OK);
+        CHECK(Q(qdist_solve3)(solver, &set, &unit, NULL, &result) == QDIST_OK && result.outcome == QDIST_CONVERGED);
+        CHECK(result.lower <= (1 + 1e-15) / sum && (1 - 1e-15) / sum <= result.upper && result.upper - result.lower <= WIDTH / sum);
+        CHECK(tips.none == 0 && tips.calls == result.support_calls);
+        for (int i = 0; i < 6; ++i) numbers += fabs((double)result.direction[i]) + fabs((double)result.support[i]);
+        for (unsigned i = 0; i < 6 * result.point_count; ++i) numbers += fabs((double)((const REAL *)result.points)[i]);
+        CHECK(numbers > 0.5 && numbers < 1000);
+    }
+}
+
+/* A box whose shortcut is none: it sees every other vertex, falls short, breaks ties the other way, sees one vertex, or any. */
+typedef struct {
+    double half[3];
+    int wrong;
+} Q(shorted);
+
+static int32_t Q(honest)(void *user, const REAL *direction, REAL *point) {
+    const Q(shorted) *box = user;
+    for (int k = 0; k < 3; ++k) point[k] = (REAL)(direction[k] < 0 ? -box->half[k] : box->half[k]);
+    return 0;
+}
+
+static int32_t Q(shortcut)(void *user, const REAL *direction, REAL *point) {
+    const Q(shorted) *box = user;
+    Q(honest)(user, direction, point);
+    switch (box->wrong) {
+    case 0: /* vertices of an even number of signs */
+        if ((point[0] < 0) ^ (point[1] < 0) ^ (point[2] < 0)) point[2] = -point[2];
+        break;
+    case 1:
+        for (int k = 0; k < 3; ++k) point[k] *= (REAL)0.99;
+        break;
+    case 2:
+        for (int k = 0; k < 3; ++k) point[k] = (REAL)(direction[k] <= 0 ? -box->half[k] : box->half[k]);
+        break;
+    case 3:
+        for (int k = 0; k < 3; ++k) point[k] = (REAL)box->half[k];
+        break;
+    default:
+        for (int k = 0; k < 3; ++k) point[k] = (REAL)(fmod(fabs((double)direction[k]) * 1e6, 2) < 1 ? box->half[k] : -box->half[k]);
+    }
+    return 0;
+}
+
+/* Point and witness are of one call: boxes side by side, whose depth is the least overlap along an axis. */
+static void Q(wrong_shortcuts)(qdist_solver *solver) {
+    const int single = sizeof(REAL) == sizeof(float);
+    for (int k = 0; k < 200; ++k) {
+        Q(shorted) boxes[2];
+        Q(qdist_set) set;
+        Q(body) bodies[2];
+        Q(depth) depth;
+        double overlap[3], apart[3];
+        int least = 0;
+        for (int which = 0; which < 2; ++which) {
+            boxes[which].wrong = (int)below(5);
+            for (int i = 0; i < 3; ++i) boxes[which].half[i] = (REAL)between(0.5, 1.5);
+            memset(&set, 0, sizeof set);
+            set.support = Q(shortcut), set.exhaustive = Q(honest), set.user = &boxes[which];
+            set.extent = below(2) ? 3 : 0;
+            CHECK(Q(qdist_body_set)(&bodies[which], &set) == QDIST_OK);
+        }
+        for (int i = 0; i < 3; ++i) {
+            bodies[1].translation[i] = (REAL)between(-0.4, 0.4);
+            if (i == k % 3) bodies[1].translation[i] = (REAL)(boxes[0].half[i] + boxes[1].half[i] - between(0.1, 0.4));
+            apart[i] = bodies[1].translation[i];
+            overlap[i] = boxes[0].half[i] + boxes[1].half[i] - fabs(apart[i]);
+            if (overlap[i] < overlap[least]) least = i;
+        }
+        depth = Q(ask)(solver, &bodies[0], &bodies[1], NULL);
+        /* (Callbacks do not tell their points in two words: float may not say it to the tolerance.) */
+        CHECK(depth.lower <= overlap[least] && overlap[least] <= depth.upper && depth.upper - depth.lower <= (single ? 4 : 1) * WIDTH);
+        CHECK(depth.outcome == QDIST_CONVERGED || (single && depth.outcome == QDIST_PRECISION));
+        for (int i = 0; i < 3; ++i) {
+            CHECK(fabs(depth.point_a[i]) <= boxes[0].half[i] + 4 * WIDTH && fabs(depth.point_b[i] - apart[i]) <= boxes[1].half[i] + 4 * WIDTH);
+            CHECK(fabs(depth.point_a[i] - depth.point_b[i] - overlap[least] * depth.normal[i]) <= 2 * sqrt(WIDTH));
+        }
+    }
+}
+
+/* Six points that hardly differ along y: a graph as good as the list, or flat; the documented memory is enough. */
+static void Q(flat_hulls)(qdist_solver *solver) {
+    static const double six[18] = {-0.172454029,   7.14247108e-06, -0.678314567, 0.0897212848, 6.2423228e-06,   -0.776069701,
+                                   0.815044343,    -1.74616491e-06, 0.552459776, 0.937620878,  -9.01898545e-07, -0.335757196,
+                                   -0.151917607,   4.48652781e-06, -0.880699575, 0.25318408,   6.1916021e-06,   -0.743329346};
+    static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 4, 12)];
+    const Q(qdist_box) cube = {{1, 1, 1}};
+    int graphs = 0;
+    for (int k = 0; k < 200; ++k) {
+        const double flat = k && k % 2 ? decade(sizeof(REAL) == 8 ? -9 : -1, 1) : 1;
+        REAL points[18];
+        uint16_t graph[QDIST_HULL_GRAPH_LEN(6)];
+        const Q(qdist_points) list = {points, 6, 3};
+        Q(qdist_hull) hull;
+        Q(body) a, b, c;
+        Q(depth) one, two;
+        qdist_solver *workspace;
+        for (int i = 0; i < 18; ++i) points[i] = (REAL)(six[i] * (i % 3 == 1 ? flat : 1) * (k ? between(0.7, 1.3) : 1));
+        CHECK(Q(qdist_solver_init)(memory, sizeof memory, 3, 4, 12, &workspace) == QDIST_OK);
+        const qdist_status status = Q(qdist_hull_prepare)(&hull, workspace, points, 6, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(6));
+        CHECK(status == QDIST_OK || status == QDIST_ERROR_FLAT);
+        CHECK(k != 0 || status == QDIST_OK);
+        if (status != QDIST_OK) continue;
+        ++graphs;
+        CHECK(Q(qdist_body_hull)(&a, &hull) == QDIST_OK && Q(qdist_body_points)(&b, &list) == QDIST_OK && Q(qdist_body_box)(&c, &cube) == QDIST_OK);
+        c.translation[0] = (REAL)between(-1, 1), c.translation[1] = (REAL)0.75;
+        one = Q(ask)(solver, &a, &c, NULL);
+        two = Q(ask)(solver, &b, &c, NULL);
+        CHECK(one.lower <= two.upper && two.lower <= one.upper && one.upper - one.lower <= 1e-3);
+    }
+    CHECK(graphs > 100);
+}
+
+/* Any words are a graph, and none makes a query much dearer than the list of points does: vertices that lead upwards one by one, through lists that
+ * overlap and are 65,535 long; and words that mean nothing. */
+static void Q(any_graph)(qdist_solver *solver) {
+    enum { MOST = 400, WORDS = 2 + 1 + MOST + 4 * (MOST + 1) + 65536 };
+    static REAL points[3 * MOST];
+    static uint16_t words[WORDS];
+    static unsigned rank[MOST], upwards[MOST];
+    const Q(qdist_sphere) ball = {(REAL)0.25};
+    double with = 0, without = 0;
+    Q(body) a, b, c;
+    CHECK(Q(qdist_body_sphere)(&c, &ball) == QDIST_OK);
+    for (int k = 0; k < 60; ++k) {
+        const unsigned count = 100 + below(MOST - 100);
+        const int nonsense = k % 3 == 2;
+        const Q(qdist_points) list = {points, count, 3};
+        const Q(qdist_hull) hull = {list, words, WORDS};
+        for (unsigned i = 0; i < count; ++i) rank[i] = i;
+        for (unsigned i = count; i-- > 1;) {
+            const unsigned j = below(i + 1), r = rank[i];
+            rank[i] = rank[j], rank[j] = r;
+        }
+        for (unsigned i = 0; i < count; ++i) {
+            upwards[rank[i]] = i;
+            points[3 * i] = (REAL)((rank[i] + 0.4 * dice()) / count), points[3 * i + 1] = (REAL)(0.1 * dice() / count), points[3 * i + 2] = (REAL)(0.1 * dice() / count);
+        }
+        for (unsigned i = 0; i < WORDS; ++i) words[i] = (uint16_t)below(nonsense ? 2 * count : 65536);
+        words[0] = (uint16_t)(nonsense ? 4 : 1), words[1] = (uint16_t)count;
+        for (unsigned i = 0; !nonsense && i < count; ++i) words[3 + i] = (uint16_t)(count - rank[i]);
+        if (!nonsense) words[2] = (uint16_t)upwards[0];
+        for (unsigned block = 0; !nonsense && 3 + count + 4 * block + 4 <= WORDS; ++block) {
+            const unsigned next = block > count + 1 ? 0 : count + 1 - block < count ? count + 1 - block : count - 1;
+            uint16_t *at = words + 3 + count + 4 * block;
+            at[0] = (uint16_t)(block <= count ? 65535 - below(1000) : 65535);
+            for (int i = 1; i < 4; ++i) at[i] = (uint16_t)upwards[next];
+        }
+        CHECK(Q(qdist_body_hull)(&a, &hull) == QDIST_OK && Q(qdist_body_points)(&b, &list) == QDIST_OK);
+        c.translation[0] = (REAL)between(1.3, 1.6), c.translation[1] = (REAL)(0.01 * dice());
+        const clock_t start = clock();
+        const Q(depth) one = Q(ask)(solver, &a, &c, NULL);
+        const clock_t middle = clock();
+        const Q(depth) two = Q(ask)(solver, &b, &c, NULL);
+        with += (double)(middle - start), without += (double)(clock() - middle);
+        CHECK(one.lower <= two.upper && two.lower <= one.upper && (nonsense || one.upper - one.lower <= 1e-3));
+    }
+    /* 25 products a point at most instead of one; without a bound it is thousands. */
+    CHECK(with <= 100 * without + 0.05 * CLOCKS_PER_SEC);
+}
+
+/* More points than 16 bits promise, nearly all of them inside: prepared as far as words can number them, and any number in wide words. */
+static void Q(many_points)(qdist_solver *solver) {
+    enum { MOST = 100000 };
+    static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 4, 65535)];
+    static REAL points[3 * MOST];
+    static uint16_t graph[QDIST_HULL_GRAPH_LEN(65535)];
+    static uint32_t large_graph[QDIST_HULL_LARGE_GRAPH_LEN(MOST)], scratch[QDIST_HULL_LARGE_WORKSPACE_LEN(MOST)];
+    const uint32_t counts[] = {30001, 65534, 65535, MOST};
+    const Q(qdist_box) cube = {{1, 1, 1}};
+    qdist_solver *workspace;
+    Q(qdist_hull) hull;
+    Q(qdist_hull_large) large;
+    Q(body) a, b, exact;
+    Q(depth) depth;
+    CHECK(Q(qdist_solver_init)(memory, sizeof memory, 3, 4, 65535, &workspace) == QDIST_OK);
+    CHECK(Q(qdist_body_box)(&exact, &cube) == QDIST_OK);
+    for (unsigned k = 0; k < sizeof counts / sizeof *counts; ++k) {
+        const uint32_t count = counts[k];
+        for (uint32_t i = 0; i < 3 * count; ++i) points[i] = (REAL)(0.99 * dice());
+        for (uint32_t i = 0; i < 8; ++i)
+            for (uint32_t j = 0; j < 3; ++j) points[3 * (count / 9 * (i + 1)) + j] = (REAL)(i >> j & 1 ? 1 : -1);
+        const qdist_status status = Q(qdist_hull_prepare)(&hull, workspace, points, count, NULL, NULL, graph, QDIST_HULL_GRAPH_LEN(65535));
+        CHECK(status == (count < 65535 ? QDIST_OK : count == 65535 ? QDIST_ERROR_HULL_POINTS : QDIST_ERROR_WORKSPACE_SIZE));
+        CHECK(Q(qdist_hull_large_prepare)(&large, scratch, QDIST_HULL_LARGE_WORKSPACE_LEN(count), points, count, NULL, NULL, large_graph,
+                                          QDIST_HULL_LARGE_GRAPH_LEN(count)) == QDIST_OK);
+        for (int wide = status == QDIST_OK ? 0 : 1; wide < 2; ++wide) {
+            CHECK((wide ? Q(qdist_body_hull_large)(&a, &large) : Q(qdist_body_hull)(&a, &hull)) == QDIST_OK);
+            b = exact;
+            b.translation[0] = (REAL)(1 + between(0.5, 0.9)), b.translation[1] = (REAL)between(-0.2, 0.2);
+            depth = Q(ask)(solver, &a, &b, NULL);
+            CHECK(Q(brackets)(depth.lower, depth.upper, 2 - (double)b.translation[0]) && Q(consistent)(&depth, 2));
+        }
+    }
+}
+
 static void Q(smoke)(void) {
     static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(3, 128, 256)];
     qdist_solver *solver = NULL;
@@ -701,7 +937,12 @@ static void Q(smoke)(void) {
     Q(skewed)(solver);
     Q(callbacks)(solver);
     Q(units)(solver);
+    Q(loose_extents)(solver);
+    Q(wrong_shortcuts)(solver);
     Q(hulls)(solver);
+    Q(flat_hulls)(solver);
+    Q(any_graph)(solver);
+    Q(many_points)(solver);
     Q(dimensions)();
     Q(plans)();
     Q(flat)(solver);

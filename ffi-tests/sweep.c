@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SLOTS = 24, OUTPUTS = 4, REALS = 16, IMAGE = 16384 };
+enum { SLOTS = 32, OUTPUTS = 4, REALS = 16, IMAGE = 16384 };
 
 /* Numbers of an argument. */
 enum reading { SOME, ALL, LIE };
@@ -164,6 +164,19 @@ static struct {
     Q(qdist_layout) layout;
     Q(qdist_preset) preset;
     REAL edges[6 * 3 * 10];
+    uint32_t edge_count;
+    uint32_t large_graph[QDIST_HULL_LARGE_GRAPH_LEN(6)], scratch[QDIST_HULL_LARGE_WORKSPACE_LEN(6)];
+    Q(qdist_hull_large) large;
+    Q(qdist_half_space) ground;
+    Q(qdist_join) join;
+    Q(qdist_body) joined;
+    Q(qdist_disc) disc;
+    Q(qdist_box2) rectangle;
+    Q(qdist_ellipse) oval;
+    Q(qdist_capsule2) stadium;
+    Q(qdist_half_plane) side;
+    Q(qdist_join2) join2;
+    Q(qdist_body2) flat, other_flat, joined_flat;
     Q(qdist_pyramid) pyramids[3];
     Q(qdist_pyramid_wrenches) pyramid_wrenches;
 } Q(w);
@@ -182,7 +195,10 @@ static void Q(arguments)(void) {
         W.three[0][k] = (REAL)0.1, W.three[1][k] = (REAL)0.2;
         W.turn[4 * k] = 1;
     }
-    W.sphere.radius = 1;
+    W.sphere.radius = W.disc.radius = 1;
+    W.rectangle.half[0] = W.oval.semi_axes[0] = 1, W.rectangle.half[1] = W.oval.semi_axes[1] = 2;
+    W.stadium.radius = W.stadium.half_height = 1;
+    W.ground.normal[2] = W.side.normal[1] = 2, W.ground.offset = W.side.offset = (REAL)0.5;
     W.cylinder.radius = W.capsule.radius = W.cone.radius = 1;
     W.cylinder.half_height = W.capsule.half_height = W.cone.half_height = 1;
     memcpy(W.matrix, identity, sizeof identity);
@@ -199,6 +215,10 @@ static void Q(arguments)(void) {
     Q(qdist_body_box)(&W.a, &W.box);
     Q(qdist_body_capsule)(&W.b, &W.capsule);
     W.b.translation[0] = (REAL)1.5;
+    Q(qdist_body2_box)(&W.flat, &W.rectangle);
+    Q(qdist_body2_capsule)(&W.other_flat, &W.stadium);
+    W.other_flat.translation[0] = (REAL)1.5;
+    W.join.a = &W.a, W.join.b = &W.b, W.join2.a = &W.flat, W.join2.b = &W.other_flat;
     for (int i = 0; i < 3; ++i) {
         static const REAL normals[3][2] = {{1, 0}, {(REAL)-0.5, (REAL)0.8660254037844386}, {(REAL)-0.5, (REAL)-0.8660254037844386}};
         Q(qdist_contact) *contact = &W.contacts[i];
@@ -236,11 +256,17 @@ static void Q(choose)(void) {
 #define SET_OUTPUT(set) output(&(set), sizeof(set), 0), numbers(&(set).radius, 3)
 #define BODY_OUTPUT(body)                                                                                          \
     output(&(body), sizeof(body), 0), numbers(&(body).set.radius, 3), numbers((body).rotation, 9), numbers((body).translation, 3), \
-        numbers((body).center, 3), numbers(&(body).rolling_radius, 1), numbers(&(body).spread, 1)
+        numbers((body).center, 3), numbers(&(body).rolling_radius, 8)
+#define FLAT_OUTPUT(body)                                                                                          \
+    output(&(body), sizeof(body), 0), numbers(&(body).set.radius, 3), numbers((body).rotation, 4), numbers((body).translation, 2), \
+        numbers((body).center, 2), numbers(&(body).rolling_radius, 6)
 #define SET_SLOT(set) slot(&(set).radius, 1, ALL), slot(&(set).extent, 1, LIE), slot(&(set).error, 1, ALL)
 #define BODY_SLOT(body)                                                                                         \
     SET_SLOT((body).set), slot((body).rotation, 9, ALL), slot((body).translation, 3, ALL), slot((body).center, 3, SOME), \
-        slot(&(body).rolling_radius, 1, ALL), slot(&(body).spread, 1, ALL)
+        slot(&(body).rolling_radius, 1, ALL), slot(&(body).spread, 1, ALL), slot((body).extents, 3, LIE), slot((body).errors, 3, LIE)
+#define FLAT_SLOT(body)                                                                                         \
+    SET_SLOT((body).set), slot((body).rotation, 4, ALL), slot((body).translation, 2, ALL), slot((body).center, 2, SOME), \
+        slot(&(body).rolling_radius, 1, ALL), slot(&(body).spread, 1, ALL), slot((body).extents, 2, LIE), slot((body).errors, 2, LIE)
 #define OPTIONS_SLOT() slot(&W.options.absolute, 1, ALL), slot(&W.options.relative, 1, ALL), slot(&W.options.threshold, 1, SOME), slot(W.options.guess, 6, SOME)
 #define UNIT_SLOT() slot(&W.unit.extent, 1, ALL), slot(&W.unit.ball_radius, 1, ALL), slot(&W.unit.inner_radius, 1, ALL)
 #define RESULT_OUTPUT(result)                                                                                                    \
@@ -274,6 +300,22 @@ CASE(set_difference, (W.set = W.other = W.a.set, W.pair.a = &W.set, W.pair.b = &
      Q(qdist_set_difference)(&W.sets[0], &W.pair))
 CASE(set_linear, (W.set = W.b.set, W.linear.set = &W.set, W.linear.matrix = W.matrix, W.linear.rows = 6, W.linear.columns = 3, SET_SLOT(W.set), slot(W.matrix, 18, ALL), slot(W.linear.translation, 6, ALL), SET_OUTPUT(W.sets[0])),
      Q(qdist_set_linear)(&W.sets[0], &W.linear))
+CASE(set_join, (W.set = W.other = W.a.set, W.other.radius = 1, W.pair.a = &W.set, W.pair.b = &W.other, W.pair.dimension = 3, SET_SLOT(W.set), SET_SLOT(W.other), SET_OUTPUT(W.sets[0])),
+     Q(qdist_set_join)(&W.sets[0], &W.pair))
+CASE(half_space, (slot(W.ground.normal, 3, ALL), slot(&W.ground.offset, 1, ALL), BODY_OUTPUT(W.a)), Q(qdist_body_half_space)(&W.a, &W.ground))
+CASE(body_join, (BODY_SLOT(W.a), BODY_SLOT(W.b), BODY_OUTPUT(W.joined)), Q(qdist_body_join)(&W.joined, &W.join))
+CASE(disc, (slot(&W.disc.radius, 1, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_disc)(&W.flat, &W.disc))
+CASE(rectangle, (slot(W.rectangle.half, 2, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_box)(&W.flat, &W.rectangle))
+CASE(oval, (slot(W.oval.semi_axes, 2, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_ellipse)(&W.flat, &W.oval))
+CASE(stadium, (slot(&W.stadium.radius, 1, ALL), slot(&W.stadium.half_height, 1, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_capsule)(&W.flat, &W.stadium))
+CASE(polygon, (W.points.dimension = 2, slot(W.tips, 24, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_points)(&W.flat, &W.points))
+CASE(flat_set, (W.set = W.flat.set, W.set.radius = 1, SET_SLOT(W.set), FLAT_OUTPUT(W.flat)), Q(qdist_body2_set)(&W.flat, &W.set))
+CASE(half_plane, (slot(W.side.normal, 2, ALL), slot(&W.side.offset, 1, ALL), FLAT_OUTPUT(W.flat)), Q(qdist_body2_half_plane)(&W.flat, &W.side))
+CASE(flat_join, (FLAT_SLOT(W.flat), FLAT_SLOT(W.other_flat), FLAT_OUTPUT(W.joined_flat)), Q(qdist_body2_join)(&W.joined_flat, &W.join2))
+#define DEPTH_OUTPUT() output(&W.depth, sizeof W.depth, 1), numbers(&W.depth.lower, 2), numbers(W.depth.normal, 3), numbers(W.depth.point_a, 3), numbers(W.depth.point_b, 3)
+CASE(depth2, (FLAT_SLOT(W.flat), FLAT_SLOT(W.other_flat), OPTIONS_SLOT(), DEPTH_OUTPUT()), Q(qdist_depth2)(Q(solver)[2], &W.flat, &W.other_flat, &W.options, &W.depth))
+CASE(on_ground, (Q(qdist_body_half_space)(&W.a, &W.ground), slot(W.ground.normal, 3, ALL), slot(&W.ground.offset, 1, ALL), slot(W.a.rotation, 9, ALL), slot(W.a.translation, 3, ALL), BODY_SLOT(W.b), DEPTH_OUTPUT()),
+     Q(qdist_depth3)(Q(solver)[3], &W.b, &W.a, &W.options, &W.depth))
 CASE(unit_ball, (slot(&W.radius, 1, ALL), UNIT_OUTPUT()), Q(qdist_unit_ball)(&W.unit, W.radius))
 CASE(unit_box, (slot(W.cube.half, 6, ALL), UNIT_OUTPUT()), Q(qdist_unit_box)(&W.unit, &W.cube))
 CASE(unit_ellipsoid, (W.egg.rotation = W.matrix, slot(W.egg.semi_axes, 6, ALL), slot(W.matrix, 36, ALL), UNIT_OUTPUT()), Q(qdist_unit_ellipsoid)(&W.unit, &W.egg))
@@ -288,6 +330,10 @@ static void Q(tips)(unsigned n) {
     for (unsigned k = 0; k < n; ++k) W.tips[2 * n * k + k] = (REAL)(1 + 0.1 * k), W.tips[2 * n * k + n + k] = (REAL)(-1.1);
 }
 CASE(hull, (TIPS(3), slot(W.tips, 18, ALL), output(&W.hull, sizeof W.hull, 0)), Q(qdist_hull_prepare)(&W.hull, Q(solver)[3], W.tips, 6, NULL, NULL, W.graph, sizeof W.graph / 2))
+CASE(large, (TIPS(3), slot(W.tips, 18, ALL), output(&W.large, sizeof W.large, 0)), Q(qdist_hull_large_prepare)(&W.large, W.scratch, sizeof W.scratch / 4, W.tips, 6, NULL, NULL, W.large_graph, sizeof W.large_graph / 4))
+CASE(body_hull, (TIPS(3), Q(qdist_hull_prepare)(&W.hull, Q(solver)[3], W.tips, 6, NULL, NULL, W.graph, sizeof W.graph / 2), slot(W.tips, 18, ALL), BODY_OUTPUT(W.a)), Q(qdist_body_hull)(&W.a, &W.hull))
+CASE(body_large, (TIPS(3), Q(qdist_hull_large_prepare)(&W.large, W.scratch, sizeof W.scratch / 4, W.tips, 6, NULL, NULL, W.large_graph, sizeof W.large_graph / 4), slot(W.tips, 18, ALL), BODY_OUTPUT(W.a)),
+     Q(qdist_body_hull_large)(&W.a, &W.large))
 CASE(depth3, (BODY_SLOT(W.a), BODY_SLOT(W.b), OPTIONS_SLOT(), output(&W.depth, sizeof W.depth, 1), numbers(&W.depth.lower, 2), numbers(W.depth.normal, 3), numbers(W.depth.point_a, 3), numbers(W.depth.point_b, 3)),
      Q(qdist_depth3)(Q(solver)[3], &W.a, &W.b, &W.options, &W.depth))
 CASE(depth3_far, (W.a.spread = 4, BODY_SLOT(W.a), slot(W.a.center, 3, ALL), output(&W.depth, sizeof W.depth, 1), numbers(&W.depth.lower, 2), numbers(W.depth.normal, 3), numbers(W.depth.point_a, 3), numbers(W.depth.point_b, 3)),
@@ -349,6 +395,10 @@ CASE(graspit, (slot(W.three[0], 3, ALL), slot(&W.radius, 1, ALL), slot(&W.moved,
 CASE(dex_net, (slot(W.three[0], 3, ALL), slot(&W.radius, 1, ALL), slot(&W.moved, 1, ALL), output(&W.preset, sizeof W.preset, 0), numbers(W.preset.frame.reference, 4), numbers(&W.preset.layout.length, 1)),
      Q(qdist_preset_dex_net)(&W.preset, W.three[0], W.radius, 8, W.moved))
 CASE(frogger, (slot(&W.radius, 1, ALL), output(&W.preset, sizeof W.preset, 0), numbers(W.preset.frame.reference, 4), numbers(&W.preset.layout.length, 1)), Q(qdist_preset_frogger)(&W.preset, 8, W.radius))
+CASE(preset_contact, (Q(qdist_preset_frogger)(&W.preset, 8, 1), slot(W.contacts[1].position, 3, ALL), slot(W.contacts[1].normal, 3, ALL), slot(&W.contacts[1].mu, 1, ALL), slot(&W.contacts[1].mus, 1, ALL),
+                      output(W.contacts[1].tangents, sizeof W.contacts[1].tangents, 0), output(&W.contacts[1].force_cap, sizeof(REAL), 0), numbers(W.contacts[1].tangents, 6), numbers(&W.contacts[1].force_cap, 1)),
+     Q(qdist_preset_contact)(&W.preset, &W.contacts[1]))
+CASE(pyramid_edges, (output(&W.edge_count, sizeof W.edge_count, 0)), Q(qdist_pyramid_edges)(&W.layout, QDIST_SOFT, &W.edge_count))
 CASE(pyramids, (CONTACT_SLOT(W.contacts[1]), FRAME_SLOT(), output(W.pyramids, sizeof W.pyramids, 0), output(W.edges, 30 * 6 * sizeof(REAL), 0), numbers(W.edges, 180)),
      Q(qdist_pyramids)(W.contacts, 3, &W.frame, &W.layout, W.edges, 30, W.pyramids, &W.which))
 CASE(set_pyramids, (PYRAMIDS(), slot(W.edges, 60, ALL), slot(&W.pyramids[1].extent, 1, ALL), slot(&W.pyramids[1].error, 1, ALL), SET_OUTPUT(W.set)), Q(qdist_set_pyramid_wrenches)(&W.set, &W.pyramid_wrenches))
@@ -368,7 +418,9 @@ static const struct {
     ENTRY(tracker), ENTRY(lower_after), ENTRY(passive), ENTRY(actives), ENTRY(active), ENTRY(subspace), ENTRY(set_wrenches),
     ENTRY(closure), ENTRY(best), ENTRY(wrench), ENTRY(forces), ENTRY(force_memory), ENTRY(force), ENTRY(gradients), ENTRY(finger_init),
     ENTRY(set_fingers), ENTRY(finger_forces), ENTRY(finger_contact_forces), ENTRY(graspit), ENTRY(dex_net), ENTRY(frogger),
-    ENTRY(pyramids), ENTRY(set_pyramids), ENTRY(opposed),
+    ENTRY(pyramids), ENTRY(set_pyramids), ENTRY(opposed), ENTRY(preset_contact), ENTRY(pyramid_edges),
+    ENTRY(set_join), ENTRY(half_space), ENTRY(body_join), ENTRY(disc), ENTRY(rectangle), ENTRY(oval), ENTRY(stadium), ENTRY(polygon),
+    ENTRY(flat_set), ENTRY(half_plane), ENTRY(flat_join), ENTRY(depth2), ENTRY(on_ground), ENTRY(large), ENTRY(body_hull), ENTRY(body_large),
 };
 
 static int Q(all_finite)(void) {
@@ -418,8 +470,11 @@ static void Q(sweep)(void) {
 #undef CASE
 #undef SET_OUTPUT
 #undef BODY_OUTPUT
+#undef FLAT_OUTPUT
+#undef DEPTH_OUTPUT
 #undef SET_SLOT
 #undef BODY_SLOT
+#undef FLAT_SLOT
 #undef OPTIONS_SLOT
 #undef UNIT_SLOT
 #undef RESULT_OUTPUT
