@@ -39,6 +39,7 @@ run() {
 ignored=''
 if [ -d ../shared/data ] || [ "${CI:-}" = true ]; then ignored=--include-ignored; fi
 
+run x scripts/x_arguments.sh
 # shellcheck disable=SC2086
 run rust cargo test --locked --workspace --features std -- --show-output $ignored
 run c make --no-print-directory test-c
