@@ -27,6 +27,17 @@
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
+ * Statuses    The text of a function ends with the errors that it may return, without QDIST_ERROR_, each with the argument that causes it (a name without
+ *             more: it is out of range). Not repeated are those of all functions: NULL and ALIGNMENT, of a pointer among the arguments or in what they
+ *             point to; STRUCT_SIZE, of a struct_size; and those of what many functions take:
+ *             a solver    SOLVER, SCALAR (it is for the other), DIMENSION (for another), BUSY (its own call is calling you).
+ *             a set       NULL (support), DIMENSION, ARGUMENT (radius, extent or error negative; contains_origin), NONFINITE (one of these).
+ *             a body      as its set; ROTATION, ARGUMENT (spread, rolling_radius, extents or errors negative; rolling_radius above the set's radius;
+ *                         symmetry), NONFINITE (one of these, center, rotation or translation).
+ *             a unit set  NULL (value; vertex, with vertex_count), DIMENSION, ARGUMENT (extent, ball_radius or inner_radius negative; inner_radius
+ *                         above extent; value is 0 along all axes), NONFINITE (one of these).
+ *             options     ARGUMENT (absolute or relative negative, or both 0; use_threshold; use_guess), NONFINITE (absolute, relative, threshold,
+ *                         guess).
  * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
  *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
@@ -332,6 +343,9 @@ uint32_t qdist_version(void);
 
 /// The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64 and QDIST_WORKSPACE_BYTES_F32, for languages that
 /// have no macros of C. scalar: sizeof(double) or sizeof(float), else QDIST_ERROR_SCALAR. dimension: 2 to 6.
+///
+/// Status: SCALAR (scalar), DIMENSION (dimension), CAPACITY (max_vertices or max_facets), WORKSPACE_SIZE (so many bytes have no number of 32
+/// bits).
 QDIST_API
 qdist_status qdist_workspace_query(uint32_t scalar,
                                    uint32_t dimension,
@@ -376,6 +390,8 @@ typedef void (*qdist_turning)(void);
 
 /// Makes a solver of a dimension of 2 to 6 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
 /// which is that of the memory.
+///
+/// Status: DIMENSION (dimension), CAPACITY (max_vertices or max_facets), WORKSPACE_SIZE (bytes), ALIGNMENT (memory, to QDIST_WORKSPACE_ALIGN).
 QDIST_API
 qdist_status qdist_solver_init_f64(void *memory,
                                    uint32_t bytes,
@@ -469,6 +485,8 @@ typedef struct {
 
 /// Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
 /// body.
+///
+/// Status: those of a set (set).
 QDIST_API
 qdist_status qdist_body_set_f64(qdist_body_f64 *body,
                                 const qdist_set_f64 *set);
@@ -520,21 +538,33 @@ typedef struct {
 } qdist_cone_f64;
 
 /// Makes a body of a sphere, in the identity pose, like all that follow.
+///
+/// Status: ARGUMENT (the radius negative), NONFINITE (the radius NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_sphere_f64(qdist_body_f64 *body, const qdist_sphere_f64 *shape);
 
 /// Makes a body of a box.
+///
+/// Status: ARGUMENT (a half size negative), NONFINITE (a half size NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_box_f64(qdist_body_f64 *body, const qdist_box_f64 *shape);
 
 /// Makes a body of an ellipsoid.
+///
+/// Status: ARGUMENT (a semi axis negative), NONFINITE (a semi axis NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_ellipsoid_f64(qdist_body_f64 *body, const qdist_ellipsoid_f64 *shape);
 
 /// Makes a body of a cylinder.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_cylinder_f64(qdist_body_f64 *body, const qdist_cylinder_f64 *shape);
 
 /// Makes a body of a capsule.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_capsule_f64(qdist_body_f64 *body, const qdist_capsule_f64 *shape);
 
 /// Makes a body of a cone.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 QDIST_API qdist_status qdist_body_cone_f64(qdist_body_f64 *body, const qdist_cone_f64 *shape);
 
 /* ======================================================= HULLS OF POINTS =======================================================
@@ -572,9 +602,13 @@ typedef struct {
 } qdist_hull_large_f64;
 
 /// Makes a set of a list of points of any dimension. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 QDIST_API qdist_status qdist_set_points_f64(qdist_set_f64 *set, const qdist_points_f64 *shape);
 
 /// Makes a body of a list of points of dimension 3. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension is not 3), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 QDIST_API qdist_status qdist_body_points_f64(qdist_body_f64 *body, const qdist_points_f64 *shape);
 
 /// Computes the graph of a hull: the words go to `graph`, and `hull` is filled with points and graph. The solver is one of
@@ -585,6 +619,9 @@ QDIST_API qdist_status qdist_body_points_f64(qdist_body_f64 *body, const qdist_p
 /// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
 /// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
 /// the function to call.
+///
+/// Status: those of a solver; ARGUMENT (count is 0), WORKSPACE_SIZE (graph_capacity), NONFINITE (a coordinate), FLAT (the points), CAPACITY
+/// (max_facets of the solver), HULL_POINTS (count, or so many points are vertices), INTERRUPTED (interrupt).
 QDIST_API
 qdist_status qdist_hull_prepare_f64(qdist_hull_f64 *hull,
                                     qdist_solver *solver,
@@ -598,6 +635,9 @@ qdist_status qdist_hull_prepare_f64(qdist_hull_f64 *hull,
 /// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
 /// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
 /// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+///
+/// Status: ARGUMENT (count is 0), HULL_POINTS (count), WORKSPACE_SIZE (workspace_capacity or graph_capacity), NONFINITE (a coordinate), FLAT (the
+/// points), INTERRUPTED (interrupt).
 QDIST_API
 qdist_status qdist_hull_large_prepare_f64(qdist_hull_large_f64 *hull,
                                           uint32_t *workspace,
@@ -610,9 +650,16 @@ qdist_status qdist_hull_large_prepare_f64(qdist_hull_large_f64 *hull,
                                           uint32_t graph_capacity);
 
 /// Makes a body of a prepared hull. Reads all points.
-QDIST_API qdist_status qdist_body_hull_f64(qdist_body_f64 *body, const qdist_hull_f64 *shape);
+///
+/// Status: ARGUMENT (shape->graph or graph_len is not that of a prepared hull, or count is 0), DIMENSION (shape->points.dimension is not 3),
+/// NONFINITE (a coordinate).
+QDIST_API
+qdist_status qdist_body_hull_f64(qdist_body_f64 *body,
+                                 const qdist_hull_f64 *shape);
 
 /// Makes a body of a large hull. Reads all points.
+///
+/// Status: as of qdist_body_hull.
 QDIST_API qdist_status qdist_body_hull_large_f64(qdist_body_f64 *body, const qdist_hull_large_f64 *shape);
 
 /* ===================================================== HULLS OF TWO BODIES =====================================================
@@ -630,7 +677,12 @@ typedef struct {
 } qdist_join_f64;
 
 /// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
-QDIST_API qdist_status qdist_body_join_f64(qdist_body_f64 *body, const qdist_join_f64 *join);
+///
+/// Status: those of a body (join->a, join->b), and NONFINITE (their extent is not finite, as found out by asking); UNBOUNDED (one is a half
+/// space).
+QDIST_API
+qdist_status qdist_body_join_f64(qdist_body_f64 *body,
+                                 const qdist_join_f64 *join);
 
 /* ========================================================= HALF SPACES =========================================================
  *
@@ -650,6 +702,8 @@ typedef struct {
 } qdist_half_space_f64;
 
 /// Makes a body of a half space, in the identity pose. Numbers are read at every query.
+///
+/// Status: ARGUMENT (the normal is 0), NONFINITE (normal or offset).
 QDIST_API qdist_status qdist_body_half_space_f64(qdist_body_f64 *body, const qdist_half_space_f64 *shape);
 
 /* ====================================================== SETS MADE OF SETS ======================================================
@@ -680,19 +734,32 @@ typedef struct {
 } qdist_linear_f64;
 
 /// Makes the Minkowski sum { x + y : x in a, y in b }.
-QDIST_API qdist_status qdist_set_sum_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
+///
+/// Status: DIMENSION (pair->dimension), those of a set (pair->a, pair->b), NONFINITE (the sum of their sizes is too large).
+QDIST_API
+qdist_status qdist_set_sum_f64(qdist_set_f64 *set,
+                               const qdist_pair_f64 *pair);
 
 /// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
+///
+/// Status: as of qdist_set_sum.
 QDIST_API qdist_status qdist_set_difference_f64(qdist_set_f64 *set, const qdist_pair_f64 *pair);
 
 /// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
 /// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+///
+/// Status: DIMENSION (pair->dimension), those of a set (pair->a, pair->b), ARGUMENT (one does not state its extent).
 QDIST_API
 qdist_status qdist_set_join_f64(qdist_set_f64 *set,
                                 const qdist_pair_f64 *pair);
 
 /// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
-QDIST_API qdist_status qdist_set_linear_f64(qdist_set_f64 *set, const qdist_linear_f64 *map);
+///
+/// Status: DIMENSION (map->rows or columns), those of a set (map->set), ARGUMENT (it does not state its extent), NONFINITE (a number of matrix or
+/// translation, or the image is too large).
+QDIST_API
+qdist_status qdist_set_linear_f64(qdist_set_f64 *set,
+                                  const qdist_linear_f64 *map);
 
 /* ========================================================== UNIT SETS ==========================================================
  *
@@ -773,21 +840,38 @@ typedef struct {
 } qdist_segment_unit_f64;
 
 /// Makes the ball of this radius > 0 around the origin, of any dimension.
+///
+/// Status: ARGUMENT (radius is not above 0), NONFINITE (radius).
 QDIST_API qdist_status qdist_unit_ball_f64(qdist_unit_f64 *unit, double radius);
 
 /// Makes an ellipsoid.
-QDIST_API qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit, const qdist_ellipsoid_unit_f64 *shape);
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (semi axes or rotation), ROTATION (rotation:
+/// its columns are not orthonormal, to 1e-4).
+QDIST_API
+qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit,
+                                      const qdist_ellipsoid_unit_f64 *shape);
 
 /// Makes a box.
-QDIST_API qdist_status qdist_unit_box_f64(qdist_unit_f64 *unit, const qdist_box_unit_f64 *shape);
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a half size is negative, or all are 0), NONFINITE (a half size, or the diagonal is too large).
+QDIST_API
+qdist_status qdist_unit_box_f64(qdist_unit_f64 *unit,
+                                const qdist_box_unit_f64 *shape);
 
 /// Makes a cross-polytope.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (a semi axis).
 QDIST_API qdist_status qdist_unit_cross_f64(qdist_unit_f64 *unit, const qdist_cross_unit_f64 *shape);
 
 /// Makes a segment.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (end is 0), NONFINITE (end).
 QDIST_API qdist_status qdist_unit_segment_f64(qdist_unit_f64 *unit, const qdist_segment_unit_f64 *shape);
 
 /// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0, or all points are), NONFINITE (a coordinate).
 QDIST_API qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist_points_f64 *shape);
 
 /* =========================================================== QUERIES ===========================================================
@@ -918,10 +1002,15 @@ typedef struct {
 } qdist_result_f64;
 
 /// Writes the defaults.
+///
+/// Status: none but those of all functions.
 QDIST_API qdist_status qdist_options_default_f64(qdist_options_f64 *options);
 
 /// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
 /// one of dimension 3. Swapping A and B turns the normal and swaps the points.
+///
+/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; CALLBACK (a or b); NONFINITE
+/// (also: the difference of the bodies is too large).
 QDIST_API
 qdist_status qdist_depth3_f64(qdist_solver *solver,
                               const qdist_body_f64 *a,
@@ -931,6 +1020,9 @@ qdist_status qdist_depth3_f64(qdist_solver *solver,
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
 /// NULL: the unit ball.
+///
+/// Status: those of a solver, of a set (a), of a unit set (q) and of options; CALLBACK (a or q); NONFINITE (also: the numbers of a became too
+/// large).
 QDIST_API
 qdist_status qdist_solve2_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
@@ -939,6 +1031,8 @@ qdist_status qdist_solve2_f64(qdist_solver *solver,
                               qdist_result_f64 *result);
 
 /// The same in dimension 3.
+///
+/// Status: as of qdist_solve2.
 QDIST_API
 qdist_status qdist_solve3_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
@@ -947,6 +1041,8 @@ qdist_status qdist_solve3_f64(qdist_solver *solver,
                               qdist_result_f64 *result);
 
 /// The same in dimension 4.
+///
+/// Status: as of qdist_solve2.
 QDIST_API
 qdist_status qdist_solve4_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
@@ -955,6 +1051,8 @@ qdist_status qdist_solve4_f64(qdist_solver *solver,
                               qdist_result_f64 *result);
 
 /// The same in dimension 5.
+///
+/// Status: as of qdist_solve2.
 QDIST_API
 qdist_status qdist_solve5_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
@@ -963,6 +1061,8 @@ qdist_status qdist_solve5_f64(qdist_solver *solver,
                               qdist_result_f64 *result);
 
 /// The same in dimension 6.
+///
+/// Status: as of qdist_solve2.
 QDIST_API
 qdist_status qdist_solve6_f64(qdist_solver *solver,
                               const qdist_set_f64 *a,
@@ -1033,33 +1133,51 @@ typedef struct {
 } qdist_half_plane_f64;
 
 /// Makes a body of a disc, in the identity pose, like all that follow.
+///
+/// Status: ARGUMENT (the radius negative), NONFINITE (the radius NaN, infinite or too large).
 QDIST_API qdist_status qdist_body2_disc_f64(qdist_body2_f64 *body, const qdist_disc_f64 *shape);
 
 /// Makes a body of a box.
+///
+/// Status: ARGUMENT (a half size negative), NONFINITE (a half size NaN, infinite or too large).
 QDIST_API qdist_status qdist_body2_box_f64(qdist_body2_f64 *body, const qdist_box2_f64 *shape);
 
 /// Makes a body of an ellipse.
+///
+/// Status: ARGUMENT (a semi axis negative), NONFINITE (a semi axis NaN, infinite or too large).
 QDIST_API qdist_status qdist_body2_ellipse_f64(qdist_body2_f64 *body, const qdist_ellipse_f64 *shape);
 
 /// Makes a body of a capsule.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 QDIST_API qdist_status qdist_body2_capsule_f64(qdist_body2_f64 *body, const qdist_capsule2_f64 *shape);
 
 /// Makes a body of the convex hull of a list of points of dimension 2, in any order: a convex polygon. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension is not 2), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 QDIST_API
 qdist_status qdist_body2_points_f64(qdist_body2_f64 *body,
                                     const qdist_points_f64 *shape);
 
 /// Makes a body of any set of dimension 2. Checks and copies the set; what it points to must outlive the body.
+///
+/// Status: those of a set (set).
 QDIST_API qdist_status qdist_body2_set_f64(qdist_body2_f64 *body, const qdist_set_f64 *set);
 
 /// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+///
+/// Status: as of qdist_body_join.
 QDIST_API qdist_status qdist_body2_join_f64(qdist_body2_f64 *body, const qdist_join2_f64 *join);
 
 /// Makes a body of a half plane, as qdist_body_half_space in space. Numbers are read at every query.
+///
+/// Status: ARGUMENT (the normal is 0), NONFINITE (normal or offset).
 QDIST_API qdist_status qdist_body2_half_plane_f64(qdist_body2_f64 *body, const qdist_half_plane_f64 *shape);
 
 /// Penetration depth or distance of two bodies in the plane, with witness points. A and B may be the same body. The solver is
 /// one of dimension 2. Swapping A and B turns the normal and swaps the points.
+///
+/// Status: as of qdist_depth3.
 QDIST_API
 qdist_status qdist_depth2_f64(qdist_solver *solver,
                               const qdist_body2_f64 *a,
@@ -1077,6 +1195,8 @@ qdist_status qdist_depth2_f64(qdist_solver *solver,
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in the dimension of the solver. Arguments as of
 /// qdist_solve2 to qdist_solve6.
+///
+/// Status: as of qdist_solve2.
 QDIST_API
 qdist_status qdist_solve_in_span_f64(qdist_solver *solver,
                                      const qdist_set_f64 *a,
@@ -1112,10 +1232,15 @@ typedef struct {
 } qdist_tracker_f64;
 
 /// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
+///
+/// Status: DIMENSION (dimension).
 QDIST_API qdist_status qdist_tracker_init_f64(qdist_tracker_f64 *tracker, uint32_t dimension);
 
 /// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
 /// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+///
+/// Status: DIMENSION (tracker->dimension), ARGUMENT (a direction of the tracker is neither of unit length nor 0), NONFINITE (moved, or a number
+/// of the tracker); those of a unit set (q).
 QDIST_API
 qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
                                            const qdist_unit_f64 *q,
@@ -1127,6 +1252,8 @@ qdist_status qdist_tracker_lower_after_f64(const qdist_tracker_f64 *tracker,
 ///
 /// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
 /// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+///
+/// Status: as of qdist_solve2, and of the tracker as of qdist_tracker_lower_after; NONFINITE (moved).
 QDIST_API
 qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
@@ -1137,6 +1264,8 @@ qdist_status qdist_solve_warm2_f64(qdist_solver *solver,
                                    qdist_result_f64 *result);
 
 /// The same in dimension 3.
+///
+/// Status: as of qdist_solve_warm2.
 QDIST_API
 qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
@@ -1147,6 +1276,8 @@ qdist_status qdist_solve_warm3_f64(qdist_solver *solver,
                                    qdist_result_f64 *result);
 
 /// The same in dimension 4.
+///
+/// Status: as of qdist_solve_warm2.
 QDIST_API
 qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
@@ -1157,6 +1288,8 @@ qdist_status qdist_solve_warm4_f64(qdist_solver *solver,
                                    qdist_result_f64 *result);
 
 /// The same in dimension 5.
+///
+/// Status: as of qdist_solve_warm2.
 QDIST_API
 qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,
@@ -1167,6 +1300,8 @@ qdist_status qdist_solve_warm5_f64(qdist_solver *solver,
                                    qdist_result_f64 *result);
 
 /// The same in dimension 6.
+///
+/// Status: as of qdist_solve_warm2.
 QDIST_API
 qdist_status qdist_solve_warm6_f64(qdist_solver *solver,
                                    qdist_tracker_f64 *tracker,

@@ -223,6 +223,10 @@ typedef struct {
 /// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
 /// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
 /// which: NULL; or after an error that is a contact's, its index is written there.
+///
+/// Status: ARGUMENT (active is neither 0 nor 1, or count is 0), FRAME (frame), TOLERANCE (rank_tolerance, where a contact has a Jacobian that
+/// counts); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS, CONTACT_FRICTION (friction, mu or mus),
+/// CONTACT_CAP, CONTACT_WRENCH; with active also CONTACT_JACOBIAN (actuated, joints or jacobian).
 QDIST_API
 qdist_status qdist_primitives_f64(const qdist_contact_f64 *contacts,
                                   uint32_t count,
@@ -233,6 +237,8 @@ qdist_status qdist_primitives_f64(const qdist_contact_f64 *contacts,
                                   uint32_t *which);
 
 /// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
+///
+/// Status: FRAME (frame), ARGUMENT (contact->actuated is 0), TOLERANCE (rank_tolerance); of the contact, as of qdist_primitives.
 QDIST_API
 qdist_status qdist_active_forces_f64(const qdist_contact_f64 *contact,
                                      const qdist_wrench_frame_f64 *frame,
@@ -243,6 +249,9 @@ qdist_status qdist_active_forces_f64(const qdist_contact_f64 *contact,
 /// of vector j is basis[6 * j + k]. Unused vectors are 0.
 ///
 /// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
+///
+/// Status: ARGUMENT (count is 0, an `empty` is neither 0 nor 1, or a `rounding` is negative), CONTACT_WRENCH (a number of a primitive), TOLERANCE
+/// (rank_tolerance).
 QDIST_API
 qdist_status qdist_wrench_subspace_f64(const qdist_primitive_f64 *primitives,
                                        uint32_t count,
@@ -266,7 +275,12 @@ typedef struct {
 } qdist_wrenches_f64;
 
 /// Makes a set of a list of primitives. Reads all of them.
-QDIST_API qdist_status qdist_set_wrenches_f64(qdist_set_f64 *set, const qdist_wrenches_f64 *wrenches);
+///
+/// Status: ARGUMENT (wrenches->norm, count is 0, an `empty` is neither 0 nor 1, or a `rounding` is negative), CONTACT_WRENCH (a number of a
+/// primitive), NONFINITE (all of them together are too large).
+QDIST_API
+qdist_status qdist_set_wrenches_f64(qdist_set_f64 *set,
+                                    const qdist_wrenches_f64 *wrenches);
 
 /* ==================================================== QUESTIONS ABOUT GRASPS ====================================================
  *
@@ -301,6 +315,8 @@ typedef struct {
 /// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
 /// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
 /// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
+///
+/// Status: those of a solver, of a set (set) and of options. (A callback that fails leaves the question undecided.)
 QDIST_API
 qdist_status qdist_force_closure_f64(qdist_solver *solver,
                                      const qdist_set_f64 *set,
@@ -310,6 +326,9 @@ qdist_status qdist_force_closure_f64(qdist_solver *solver,
 /// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
 /// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
 /// that they have.
+///
+/// Status: those of a solver, of a set (any of sets), of a unit set (q) and of options; ARGUMENT (count is 0), CALLBACK (a set or q), NONFINITE
+/// (also: the numbers of a set became too large).
 QDIST_API
 qdist_status qdist_best_of6_f64(qdist_solver *solver,
                                 const qdist_set_f64 *sets,
@@ -367,6 +386,8 @@ typedef struct {
 
 /// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
 /// times position. `force` and `moment` are three numbers, `wrench` six.
+///
+/// Status: FRAME (frame), NONFINITE (force or moment, or the wrench is too large).
 QDIST_API
 qdist_status qdist_wrench_f64(const qdist_wrench_frame_f64 *frame,
                               const double *force,
@@ -378,6 +399,9 @@ qdist_status qdist_wrench_f64(const qdist_wrench_frame_f64 *frame,
 /// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
 /// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
 /// negative of the external wrench. qdist_contact_force makes a force of it.
+///
+/// Status: those of qdist_set_wrenches (wrenches); ARGUMENT (memory->count, or options->relative or limit is negative), NONFINITE (a number of
+/// memory, external or options), CALLBACK (wrenches: see callback_code).
 QDIST_API
 qdist_status qdist_contact_forces_f64(const qdist_wrenches_f64 *wrenches,
                                       qdist_force_memory_f64 *memory,
@@ -388,6 +412,9 @@ qdist_status qdist_contact_forces_f64(const qdist_wrenches_f64 *wrenches,
 
 /// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
 /// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+///
+/// Status: FRAME (frame), NONFINITE (share, or the force is too large); of the contact: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
+/// CONTACT_FRICTION, CONTACT_CAP.
 QDIST_API
 qdist_status qdist_contact_force_f64(const qdist_contact_f64 *contact,
                                      const qdist_wrench_frame_f64 *frame,
@@ -437,6 +464,9 @@ typedef struct {
 /// tolerance of 1e-2 is usually enough.
 ///
 /// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+///
+/// Status: ARGUMENT (active is neither 0 nor 1; count is 0, or not that of wrenches; a flag of result), NONFINITE (a number of result), FRAME
+/// (frame), TOLERANCE (rank_tolerance), those of qdist_set_wrenches (wrenches) and of a unit set (q); of a contact, as of qdist_primitives.
 QDIST_API
 qdist_status qdist_grasp_gradients_f64(const qdist_wrenches_f64 *wrenches,
                                        const qdist_contact_f64 *contacts,
@@ -488,6 +518,9 @@ typedef struct {
 ///
 /// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
 /// figures`, `make stack`).
+///
+/// Status: ARGUMENT (model, or count is 0), CAPACITY (count is above 4), FRAME (frame), TORQUE_LIMIT (limits), TOLERANCE (rank_tolerance); of a
+/// contact, as of qdist_primitives; CONTACT_JACOBIAN also where its joints are not those of the first.
 QDIST_API
 qdist_status qdist_finger_init_f64(qdist_finger_f64 *finger,
                                    const qdist_contact_f64 *contacts,
@@ -499,6 +532,8 @@ qdist_status qdist_finger_init_f64(qdist_finger_f64 *finger,
                                    uint32_t *which);
 
 /// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
+///
+/// Status: ARGUMENT (wrenches->norm, or count is 0), FINGER (one of wrenches->fingers), NONFINITE (all of them together are too large).
 QDIST_API
 qdist_status qdist_set_finger_wrenches_f64(qdist_set_f64 *set,
                                            const qdist_finger_wrenches_f64 *wrenches);
@@ -507,6 +542,8 @@ qdist_status qdist_set_finger_wrenches_f64(qdist_set_f64 *set,
 /// forces[4 * i + 3], as qdist_contact_force has it. `forces` has room for 4 * contacts numbers.
 ///
 /// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
+///
+/// Status: FINGER (finger), NONFINITE (direction), CALLBACK (finger).
 QDIST_API
 qdist_status qdist_finger_forces_f64(const qdist_finger_f64 *finger,
                                      const double *direction,
@@ -519,6 +556,8 @@ qdist_status qdist_finger_forces_f64(const qdist_finger_f64 *finger,
 /// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
 ///
 /// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
+///
+/// Status: those of qdist_set_finger_wrenches (wrenches), and of qdist_contact_forces.
 QDIST_API
 qdist_status qdist_finger_contact_forces_f64(const qdist_finger_wrenches_f64 *wrenches,
                                              qdist_force_memory_f64 *memory,
@@ -560,6 +599,8 @@ typedef struct {
 
 /// GraspIt! with an object of this centre of gravity, three numbers, and largest radius about it. millimetre: its unit of length in yours. A
 /// soft contact's mus is its 8 sqrt(a b) / 15 mu, with a and b the semi axes of the contact ellipse.
+///
+/// Status: ARGUMENT (norm), FRAME (center, max_radius or millimetre).
 QDIST_API
 qdist_status qdist_preset_graspit_f64(qdist_preset_f64 *preset,
                                       const double *center,
@@ -570,6 +611,9 @@ qdist_status qdist_preset_graspit_f64(qdist_preset_f64 *preset,
 /// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
 /// configured the median of the three coordinates of the upper corner of the bounding box. Its defaults: 8 sides, and 0.005 for the radius.
 /// Its normal force is the cosine between closing direction and normal: set force_cap after qdist_preset_contact.
+///
+/// Status: ARGUMENT (finger_radius is negative, or sides is below 3), NONFINITE (finger_radius), FRAME (center or
+/// torque_scale), CONTACT_WRENCH (finger_radius is above 1.4e146, float: 4.5e15).
 QDIST_API
 qdist_status qdist_preset_dex_net_f64(qdist_preset_f64 *preset,
                                       const double *center,
@@ -579,6 +623,8 @@ qdist_status qdist_preset_dex_net_f64(qdist_preset_f64 *preset,
 
 /// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
 /// qdist_opposed_mean.
+///
+/// Status: ARGUMENT (sides is below 3), FRAME (lamb).
 QDIST_API
 qdist_status qdist_preset_frogger_f64(qdist_preset_f64 *preset,
                                       uint32_t sides,
@@ -586,6 +632,8 @@ qdist_status qdist_preset_frogger_f64(qdist_preset_f64 *preset,
 
 /// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
 /// edges. Of the preset only `tool` counts.
+///
+/// Status: ARGUMENT (preset->tool); of the contact: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_FRICTION.
 QDIST_API
 qdist_status qdist_preset_contact_f64(const qdist_preset_f64 *preset,
                                       qdist_contact_f64 *contact);
@@ -613,6 +661,9 @@ typedef struct {
 } qdist_pyramid_wrenches_f64;
 
 /// How many edges the pyramid of a contact with this friction has.
+///
+/// Status: of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE (length), FRAME (length of QDIST_LAYOUT_GRASPIT);
+/// CONTACT_FRICTION (friction).
 QDIST_API
 qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
                                      qdist_friction friction,
@@ -623,6 +674,10 @@ qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
 ///
 /// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
 /// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+///
+/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE
+/// (length), FRAME (length of QDIST_LAYOUT_GRASPIT); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
+/// CONTACT_FRICTION, CONTACT_CAP, CONTACT_WRENCH.
 QDIST_API
 qdist_status qdist_pyramids_f64(const qdist_contact_f64 *contacts,
                                 uint32_t count,
@@ -634,10 +689,18 @@ qdist_status qdist_pyramids_f64(const qdist_contact_f64 *contacts,
                                 uint32_t *which);
 
 /// Makes a set of a list of pyramids. Reads all edges.
-QDIST_API qdist_status qdist_set_pyramid_wrenches_f64(qdist_set_f64 *set, const qdist_pyramid_wrenches_f64 *wrenches);
+///
+/// Status: ARGUMENT (wrenches->norm; count of them or of the edges of one is 0; extent or error negative), NONFINITE (extent or error, or all of
+/// them together), CONTACT_WRENCH (an edge).
+QDIST_API
+qdist_status qdist_set_pyramid_wrenches_f64(qdist_set_f64 *set,
+                                            const qdist_pyramid_wrenches_f64 *wrenches);
 
 /// Minus the mean of all edges, as a segment for Q: d of the set with QDIST_L1 is then the t of FRoGGeR's min-weight metric N l = t / (1 + t), which
 /// increases in t, so that it takes a bracket to a bracket. Its default asks for N l = 0.3. QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
+///
+/// Status: ARGUMENT (count of them or of the edges of one is 0; extent or error negative; or the mean is 0), NONFINITE (extent or error),
+/// CONTACT_WRENCH (an edge).
 QDIST_API
 qdist_status qdist_opposed_mean_f64(qdist_segment_unit_f64 *segment,
                                     const qdist_pyramid_f64 *pyramids,

@@ -30,6 +30,12 @@
  *             does nothing.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
  *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
+ * Statuses    As in qdist.h. Of all functions also INTERNAL; and those of what many functions take:
+ *             a pair, a tracker   BUSY (its own call is calling you).
+ *             a pose              ROTATION (rotation is not of unit length), NONFINITE (rotation, translation).
+ *             a metric            ARGUMENT (metric; own->at_least; own->radius or mass->volume is not above 0; mass->inertia is that of no body),
+ *                                 NONFINITE (a number of own or mass), NULL (own, or a function of it), MESH_NOT_SOLID (A, for QDIST_MESH_SIGMA
+ *                                 without mass, or at_least it).
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with
  *             the unit.
  * Frames      Right-handed. A moves and B rests; a pose takes points of A's frame to B's, x_B = R x_A + t, and all results are in the frame of B. */
@@ -64,6 +70,8 @@ typedef struct {
 
 /// Sets the allocator of the process. The struct is not copied: it must stay valid and unchanged until the process ends. Once only, and before
 /// the first mesh: afterwards QDIST_ERROR_ALLOCATOR.
+///
+/// Status: NULL (also: alloc or free), ALLOCATOR (it is too late).
 QDIST_API
 qdist_status qdist_mesh_set_allocator(const qdist_allocator *allocator);
 
@@ -130,6 +138,9 @@ typedef struct {
 ///
 /// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
 /// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+///
+/// Status: MESH_EMPTY (triangle_count is 0), MESH_INDEX (triangles; also where vertex_count is 0), MESH_VERTEX (xyz), MESH_COLLINEAR (xyz),
+/// CAPACITY (vertex_count or triangle_count).
 QDIST_API
 qdist_status qdist_mesh_create(const double *xyz,
                                uint32_t vertex_count,
@@ -141,6 +152,8 @@ qdist_status qdist_mesh_create(const double *xyz,
 /// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
 /// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
 /// rounding cannot tell it, or a coordinate is above 1e50.
+///
+/// Status: MESH_NOT_SOLID (mesh).
 QDIST_API
 qdist_status qdist_mesh_certify(const qdist_mesh *mesh,
                                 qdist_mesh **certified);
@@ -149,11 +162,15 @@ qdist_status qdist_mesh_certify(const qdist_mesh *mesh,
 QDIST_API void qdist_mesh_free(qdist_mesh *mesh);
 
 /// What is wrong with the mesh, and whether it bounds a solid. Intersections of the mesh with itself are not looked for. O(1).
+///
+/// Status: none but those of all functions.
 QDIST_API
 qdist_status qdist_mesh_check(const qdist_mesh *mesh,
                               qdist_mesh_report *report);
 
 /// Volume, centre of mass and inertia of the solid, or QDIST_ERROR_MESH_NOT_SOLID. Allocates for the time of the call; O(n log n).
+///
+/// Status: MESH_NOT_SOLID (mesh).
 QDIST_API
 qdist_status qdist_mesh_integrate(const qdist_mesh *mesh,
                                   qdist_mesh_mass *mass);
@@ -221,6 +238,8 @@ typedef struct {
 #define QDIST_MESH_FACE 2
 
 /// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
+///
+/// Status: none but those of all functions.
 QDIST_API qdist_status qdist_mesh_pair_create(const qdist_mesh *a, const qdist_mesh *b, qdist_mesh_pair **pair);
 
 /// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
@@ -228,6 +247,8 @@ QDIST_API void qdist_mesh_pair_free(qdist_mesh_pair *pair);
 
 /// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
 /// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
+///
+/// Status: those of a pose (pose).
 QDIST_API
 qdist_status qdist_mesh_pair_collides(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
@@ -235,6 +256,8 @@ qdist_status qdist_mesh_pair_collides(qdist_mesh_pair *pair,
 
 /// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
 /// microseconds (`make figures`), and less where the pose has changed little.
+///
+/// Status: those of a pose (pose).
 QDIST_API
 qdist_status qdist_mesh_pair_distance(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
@@ -246,6 +269,8 @@ qdist_status qdist_mesh_pair_distance(qdist_mesh_pair *pair,
 ///
 /// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
 /// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
+///
+/// Status: those of a pose (pose); ARGUMENT (margin is negative), NONFINITE (margin).
 QDIST_API
 qdist_status qdist_mesh_pair_contacts(qdist_mesh_pair *pair,
                                       const qdist_mesh_pose *pose,
@@ -427,12 +452,17 @@ typedef struct {
 QDIST_API const char *qdist_mesh_outcome_string(qdist_mesh_outcome outcome);
 
 /// Writes the defaults, struct_size included.
+///
+/// Status: none but those of all functions.
 QDIST_API qdist_status qdist_mesh_options_default(qdist_mesh_options *options);
 
 /// The depth of A at a pose. options: NULL for the defaults. Milliseconds; allocates while it runs, and keeps some of it in the pair.
 ///
 /// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
 /// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
+///
+/// Status: those of a pose (pose, any of options->poses) and of a metric; ARGUMENT (options->effort, or relative is negative), NONFINITE
+/// (options->relative).
 QDIST_API
 qdist_status qdist_mesh_pair_depth(qdist_mesh_pair *pair,
                                    const qdist_mesh_pose *pose,
@@ -494,9 +524,13 @@ typedef struct {
 } qdist_mesh_budget;
 
 /// Writes the defaults, struct_size included.
+///
+/// Status: none but those of all functions.
 QDIST_API qdist_status qdist_mesh_budget_default(qdist_mesh_budget *budget);
 
 /// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
+///
+/// Status: none but those of all functions.
 QDIST_API
 qdist_status qdist_mesh_tracker_create(const qdist_mesh *a,
                                        const qdist_mesh *b,
@@ -509,6 +543,9 @@ QDIST_API void qdist_mesh_tracker_free(qdist_mesh_tracker *tracker);
 /// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
 /// error the tracker is as before.
 /// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+///
+/// Status: those of a pose (pose) and of a metric; ARGUMENT (budget->effort; certify is neither 0 nor 1; relative is negative), NONFINITE
+/// (budget->relative).
 QDIST_API
 qdist_status qdist_mesh_tracker_update(qdist_mesh_tracker *tracker,
                                        const qdist_mesh_pose *pose,
@@ -519,12 +556,16 @@ qdist_status qdist_mesh_tracker_update(qdist_mesh_tracker *tracker,
 /// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
 ///
 /// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+///
+/// Status: those of a pose (answer->pose).
 QDIST_API
 qdist_status qdist_mesh_tracker_merge(qdist_mesh_tracker *tracker,
                                       const qdist_mesh_depth *answer,
                                       uint32_t *taken);
 
 /// Forgets everything: the next tick is the first.
+///
+/// Status: none but those of all functions.
 QDIST_API qdist_status qdist_mesh_tracker_reset(qdist_mesh_tracker *tracker);
 
 #ifdef __cplusplus

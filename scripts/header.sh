@@ -59,6 +59,20 @@ if [ "$count" -gt $most ]; then
     exit 1
 fi
 
+# Every function that returns a status says which argument causes which.
+silent=$(cat "$out" "$out.grasp" "$out.mesh" | awk '
+    /^\/\/\// { text = text $0; next }
+    /^QDIST_API$/ { next }
+    match($0, /qdist_status qdist_[a-z0-9_]+\(/) {
+        name = substr($0, RSTART + 13, RLENGTH - 14)
+        if (name !~ /_f32$/ && text !~ /Status: /) print name
+    }
+    { text = "" }')
+if [ -n "$silent" ]; then
+    echo "the texts of these functions say nothing of their statuses:" $silent >&2
+    exit 1
+fi
+
 # $1: what was written, $2: the header.
 install() {
     if [ "$check" = --check ]; then

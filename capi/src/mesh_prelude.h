@@ -30,6 +30,12 @@
  *             does nothing.
  * Failure     The library prints nothing and never exits, but for want of memory. A defect inside of it is caught and becomes
  *             QDIST_ERROR_INTERNAL; the pair or tracker is as new then. (Built with panic = "abort" it would abort the process.)
+ * Statuses    As in qdist.h. Of all functions also INTERNAL; and those of what many functions take:
+ *             a pair, a tracker   BUSY (its own call is calling you).
+ *             a pose              ROTATION (rotation is not of unit length), NONFINITE (rotation, translation).
+ *             a metric            ARGUMENT (metric; own->at_least; own->radius or mass->volume is not above 0; mass->inertia is that of no body),
+ *                                 NONFINITE (a number of own or mass), NULL (own, or a function of it), MESH_NOT_SOLID (A, for QDIST_MESH_SIGMA
+ *                                 without mass, or at_least it).
  * Units       Lengths are in your unit, depths too; coordinates are at most 1e60 in size. There is no absolute tolerance: results scale with
  *             the unit.
  * Frames      Right-handed. A moves and B rests; a pose takes points of A's frame to B's, x_B = R x_A + t, and all results are in the frame of B. */

@@ -27,6 +27,17 @@
  *             has been written. (A failing callback is the one exception, see QDIST_ERROR_CALLBACK; after an error of
  *             a qdist_hull_prepare the words of the graph are unspecified.) Poses, options and the numbers of sets and bodies
  *             are checked at every call; shapes and lists when a set, body or unit set is made of them.
+ * Statuses    The text of a function ends with the errors that it may return, without QDIST_ERROR_, each with the argument that causes it (a name without
+ *             more: it is out of range). Not repeated are those of all functions: NULL and ALIGNMENT, of a pointer among the arguments or in what they
+ *             point to; STRUCT_SIZE, of a struct_size; and those of what many functions take:
+ *             a solver    SOLVER, SCALAR (it is for the other), DIMENSION (for another), BUSY (its own call is calling you).
+ *             a set       NULL (support), DIMENSION, ARGUMENT (radius, extent or error negative; contains_origin), NONFINITE (one of these).
+ *             a body      as its set; ROTATION, ARGUMENT (spread, rolling_radius, extents or errors negative; rolling_radius above the set's radius;
+ *                         symmetry), NONFINITE (one of these, center, rotation or translation).
+ *             a unit set  NULL (value; vertex, with vertex_count), DIMENSION, ARGUMENT (extent, ball_radius or inner_radius negative; inner_radius
+ *                         above extent; value is 0 along all axes), NONFINITE (one of these).
+ *             options     ARGUMENT (absolute or relative negative, or both 0; use_threshold; use_guess), NONFINITE (absolute, relative, threshold,
+ *                         guess).
  * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
  *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what

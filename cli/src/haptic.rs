@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-use clap::Args;
+use clap::{Args, value_parser};
 
 use crate::Trouble;
 use crate::mesh::input::Kind;
@@ -31,7 +31,7 @@ const LATE: Duration = Duration::from_micros(400);
 /// Of the spring, per length of the files.
 const STIFFNESS: f64 = 1.0;
 /// Every so many ticks a cold answer is asked for, to compare.
-const SAMPLE: usize = 50;
+const SAMPLE: u32 = 50;
 
 /// Vertices and triangles.
 type Triangles = (Vec<Point3<f64>>, Vec<[u32; 3]>);
@@ -120,18 +120,17 @@ fn metric(a: &Model, sigma: bool) -> &dyn Metric {
     }
 }
 
+/// Of a list that is not empty.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
-    sorted
-        .get(((sorted.len() as f64 * share) as usize).min(sorted.len().saturating_sub(1)))
-        .copied()
-        .unwrap_or(f64::NAN)
+    sorted[((sorted.len() as f64 * share) as usize).min(sorted.len() - 1)]
 }
 
 /// A tool in a haptic loop: its depth at 1 kHz, and the force that a hand would feel
 ///
 /// The tool goes round its part on a closed curve, in and out of contact, turning as it goes. Every tick asks a tracker for the depth with a clock
 /// that says "late" after 0.4 ms, and is timed; another thread asks cold queries, whose answers are merged in. Printed are a histogram of the
-/// ticks, how the warm answers compare with cold ones, and the strongest force.
+/// ticks, how far the warm upper bounds are above cold ones, in shares of the tool's size (of depths near 0 a ratio says nothing), and the
+/// strongest force.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Request {
     /// The two meshes (OBJ, STL, PLY, OFF); without them, a ring goes through a knot
@@ -140,16 +139,13 @@ pub struct Request {
     /// What is measured
     #[arg(long, default_value = "disp")]
     metric: Kind,
-    /// Ticks of the curve
-    #[arg(long, value_name = "N", default_value = "5000", value_parser = at_least_one)]
-    ticks: usize,
+    /// Ticks of the curve, ten millions at most
+    #[arg(long, value_name = "N", default_value = "5000", value_parser = value_parser!(u32).range(1..=10_000_000))]
+    #[arg(allow_negative_numbers = true)]
+    ticks: u32,
     /// A tick a millisecond, not as fast as they can: otherwise the background falls behind
     #[arg(long)]
     realtime: bool,
-}
-
-fn at_least_one(text: &str) -> Result<usize, Trouble> {
-    text.parse().ok().filter(|&n| n > 0).ok_or("not a whole number from 1 up".into())
 }
 
 /// Goes round, and reports on the standard output.
@@ -177,7 +173,7 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         let mut tracker = DepthTracker::new(a, b);
         let begin = Instant::now();
         for tick in 0..request.ticks {
-            let pose = path(a, b, tick as f64 / request.ticks as f64);
+            let pose = path(a, b, f64::from(tick) / f64::from(request.ticks));
             let start = Instant::now();
             if let Ok(cold) = results.try_recv() {
                 merged += u32::from(tracker.merge(&cold));
@@ -196,28 +192,50 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
                 }
             }
             if request.realtime {
-                std::thread::sleep((begin + TICK * (tick as u32 + 1)).saturating_duration_since(Instant::now()));
+                std::thread::sleep((begin + TICK * (tick + 1)).saturating_duration_since(Instant::now()));
             }
         }
     });
     let mut cold = DepthSolver::new(&a, &b);
-    let mut ratios: Vec<_> = samples
-        .iter()
-        .map(|(pose, warm)| warm.upper / cold.depth(pose, metric, &DepthOptions::default(), None).upper)
-        .collect();
-    ratios.sort_by(f64::total_cmp);
+    let pairs = samples.iter().map(|(pose, warm)| {
+        let cold = cold.depth(pose, metric, &DepthOptions::default(), None);
+        (warm.upper, cold.upper)
+    });
+    let compared = compared(&pairs.collect::<Vec<_>>(), a.mesh().diagonal());
     report(times);
     println!("merged answers of the background: {merged}");
-    println!(
-        "upper bound, warm / cold, on {} ticks: median {:.3}, 90 % {:.3}, worst {:.3}",
-        ratios.len(),
-        quantile(&ratios, 0.5),
-        quantile(&ratios, 0.9),
-        quantile(&ratios, 1.0)
-    );
-    let (_, force, torque, tick) = strongest;
-    println!("strongest force, tick {tick}: force {:.4?}, torque {:.4?}", force.as_slice(), torque.as_slice());
+    println!("{compared}");
+    match strongest {
+        (0.0, ..) => println!("no force: the tool touched nothing"),
+        (_, force, torque, tick) => {
+            println!("strongest force, tick {tick}: force {:.4?}, torque {:.4?}", force.as_slice(), torque.as_slice());
+        }
+    }
     Ok(())
+}
+
+/// Upper bounds of warm answers beside those of cold ones, in shares of the tool's size: a depth may be next to nothing, and a ratio of two such says
+/// nothing of either.
+fn compared(pairs: &[(f64, f64)], size: f64) -> String {
+    let known = |x: f64| x < f64::MAX;
+    let mut off: Vec<_> = pairs
+        .iter()
+        .filter(|(warm, cold)| known(*warm) && known(*cold))
+        .map(|(warm, cold)| (warm - cold) / size)
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let lacking = match pairs.len() - off.len() {
+        0 => String::new(),
+        count => format!(" ({count} more have no upper bound)"),
+    };
+    if off.is_empty() {
+        return format!("warm and cold upper bounds: none of both were sampled in contact{lacking}");
+    }
+    let [median, late, most] = [0.5, 0.9, 1.0].map(|share| 100.0 * quantile(&off, share));
+    format!(
+        "upper bound, warm less cold, in % of the tool's size ({size:.4}), on {} ticks: median {median:.3}, 90 % {late:.3}, worst {most:.3}{lacking}",
+        off.len()
+    )
 }
 
 /// The histogram of the ticks, in milliseconds.
@@ -237,4 +255,37 @@ fn report(mut times: Vec<f64>) {
         quantile(&times, 1.0),
         times.iter().filter(|&&t| t > 1.0).count()
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        request: Request,
+    }
+
+    #[test]
+    fn what_may_be_asked() {
+        let parse = |line: &str| Line::try_parse_from(line.split_whitespace()).map(|line| line.request);
+        assert_eq!(parse("haptic --ticks 7").unwrap().ticks, 7);
+        for number in ["0", "-1", "nan", "1.5", "10000001", "99999999999999999999"] {
+            let told = parse(&format!("haptic --ticks {number}")).unwrap_err().to_string();
+            assert!(told.contains(&format!("'{number}' for '--ticks")), "{told}");
+        }
+        assert!(parse("haptic a.obj").is_err());
+    }
+
+    /// Nothing is divided by a depth that may be 0; a loop that never touches has a word for it.
+    #[test]
+    fn depths_near_nothing_are_compared() {
+        let told = compared(&[(1e-9, 0.0), (0.5, 0.4), (0.2, 0.3)], 2.0);
+        assert!(told.contains("on 3 ticks: median 0.000, 90 % 5.000, worst 5.000"), "{told}");
+        let told = compared(&[(f64::INFINITY, 1.0), (f64::INFINITY, f64::INFINITY)], 2.0);
+        assert!(told.contains("none of both") && told.contains("2 more have no upper bound"), "{told}");
+        assert!(compared(&[], 1.0).contains("none of both"));
+    }
 }

@@ -4,9 +4,12 @@
 //! is wrong, in words.
 
 pub mod depth;
+mod flags;
 pub mod grasp;
 pub mod haptic;
+mod json;
 pub mod mesh;
+mod text;
 
 use std::io;
 

@@ -37,12 +37,16 @@ pub struct qdist_linear_f64 {
 }
 
 /// Makes the Minkowski sum { x + y : x in a, y in b }.
+///
+/// Status: DIMENSION (pair->dimension), those of a set (pair->a, pair->b), NONFINITE (the sum of their sizes is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_sum_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
     status(fill_pair::<false>(set, pair))
 }
 
 /// Makes the Minkowski difference { x - y : x in a, y in b }: it contains the origin exactly where a and b overlap.
+///
+/// Status: as of qdist_set_sum.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_difference_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
     status(fill_pair::<true>(set, pair))
@@ -50,12 +54,17 @@ pub extern "C" fn qdist_set_difference_f64(set: Out<qdist_set_f64>, pair: In<qdi
 
 /// Makes the join: the convex hull of the union of a and b. The smaller of the two radii is that of the set, the rest of the larger one becomes part
 /// of the core. Both sets must state their extents, or QDIST_ERROR_ARGUMENT. (For bodies in poses see qdist_body_join.)
+///
+/// Status: DIMENSION (pair->dimension), those of a set (pair->a, pair->b), ARGUMENT (one does not state its extent).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_join_f64(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> qdist_status {
     status(fill_join(set, pair))
 }
 
 /// Makes the image of a set. A ball does not stay a ball: it becomes part of the core.
+///
+/// Status: DIMENSION (map->rows or columns), those of a set (map->set), ARGUMENT (it does not state its extent), NONFINITE (a number of matrix or
+/// translation, or the image is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_linear_f64(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> qdist_status {
     status(fill_linear(set, map))

@@ -32,6 +32,8 @@ impl Half<3> for qdist_half_space_f64 {
 }
 
 /// Makes a body of a half space, in the identity pose. Numbers are read at every query.
+///
+/// Status: ARGUMENT (the normal is 0), NONFINITE (normal or offset).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_half_space_f64(
     body: Out<qdist_body_f64>,

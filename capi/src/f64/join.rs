@@ -27,6 +27,9 @@ impl Joined<3> for qdist_join_f64 {
 }
 
 /// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+///
+/// Status: those of a body (join->a, join->b), and NONFINITE (their extent is not finite, as found out by asking); UNBOUNDED (one is a half
+/// space).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_join_f64(body: Out<qdist_body_f64>, join: In<qdist_join_f64>) -> qdist_status {
     status(Joined::fill(body, join))

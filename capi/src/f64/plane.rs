@@ -145,48 +145,64 @@ impl Half<2> for qdist_half_plane_f64 {
 }
 
 /// Makes a body of a disc, in the identity pose, like all that follow.
+///
+/// Status: ARGUMENT (the radius negative), NONFINITE (the radius NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_disc_f64(body: Out<qdist_body2_f64>, shape: In<qdist_disc_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a box.
+///
+/// Status: ARGUMENT (a half size negative), NONFINITE (a half size NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_box_f64(body: Out<qdist_body2_f64>, shape: In<qdist_box2_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of an ellipse.
+///
+/// Status: ARGUMENT (a semi axis negative), NONFINITE (a semi axis NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_ellipse_f64(body: Out<qdist_body2_f64>, shape: In<qdist_ellipse_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a capsule.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_capsule_f64(body: Out<qdist_body2_f64>, shape: In<qdist_capsule2_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of the convex hull of a list of points of dimension 2, in any order: a convex polygon. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension is not 2), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_points_f64(body: Out<qdist_body2_f64>, shape: In<qdist_points_f64>) -> qdist_status {
     status(fill_points(body, shape))
 }
 
 /// Makes a body of any set of dimension 2. Checks and copies the set; what it points to must outlive the body.
+///
+/// Status: those of a set (set).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_set_f64(body: Out<qdist_body2_f64>, set: In<qdist_set_f64>) -> qdist_status {
     status(Placed::of_set(body, set))
 }
 
 /// Makes a body of the hull of two bodies. Their support functions are called where they do not state their extent.
+///
+/// Status: as of qdist_body_join.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_join_f64(body: Out<qdist_body2_f64>, join: In<qdist_join2_f64>) -> qdist_status {
     status(Joined::fill(body, join))
 }
 
 /// Makes a body of a half plane, as qdist_body_half_space in space. Numbers are read at every query.
+///
+/// Status: ARGUMENT (the normal is 0), NONFINITE (normal or offset).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body2_half_plane_f64(
     body: Out<qdist_body2_f64>,
@@ -197,6 +213,8 @@ pub extern "C" fn qdist_body2_half_plane_f64(
 
 /// Penetration depth or distance of two bodies in the plane, with witness points. A and B may be the same body. The solver is
 /// one of dimension 2. Swapping A and B turns the normal and swaps the points.
+///
+/// Status: as of qdist_depth3.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_depth2_f64(
     solver: Out<qdist_solver>,

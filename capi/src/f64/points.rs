@@ -75,12 +75,16 @@ const _: () = {
 };
 
 /// Makes a set of a list of points of any dimension. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_points_f64(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> qdist_status {
     status(fill_set(set, shape))
 }
 
 /// Makes a body of a list of points of dimension 3. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension is not 3), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_points_f64(body: Out<qdist_body_f64>, shape: In<qdist_points_f64>) -> qdist_status {
     status(fill_points(body, shape))
@@ -94,6 +98,9 @@ pub extern "C" fn qdist_body_points_f64(body: Out<qdist_body_f64>, shape: In<qdi
 /// `count` is at most QDIST_HULL_POINTS. Up to 65534 points (with max_facets = 65535) are tried, too: they can be prepared when few
 /// enough of them are vertices of the hull; otherwise the status is QDIST_ERROR_HULL_POINTS, and qdist_hull_large_prepare_f64 is
 /// the function to call.
+///
+/// Status: those of a solver; ARGUMENT (count is 0), WORKSPACE_SIZE (graph_capacity), NONFINITE (a coordinate), FLAT (the points), CAPACITY
+/// (max_facets of the solver), HULL_POINTS (count, or so many points are vertices), INTERRUPTED (interrupt).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_hull_prepare_f64(
     hull: Out<qdist_hull_f64>,
@@ -126,6 +133,9 @@ pub extern "C" fn qdist_hull_prepare_f64(
 /// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
 /// `graph` and QDIST_HULL_LARGE_WORKSPACE_LEN(count) words of `workspace` are needed; the latter may be used otherwise
 /// afterwards. With `interrupt`, which may be NULL, the status may be QDIST_ERROR_INTERRUPTED.
+///
+/// Status: ARGUMENT (count is 0), HULL_POINTS (count), WORKSPACE_SIZE (workspace_capacity or graph_capacity), NONFINITE (a coordinate), FLAT (the
+/// points), INTERRUPTED (interrupt).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_hull_large_prepare_f64(
     hull: Out<qdist_hull_large_f64>,
@@ -164,12 +174,17 @@ pub extern "C" fn qdist_hull_large_prepare_f64(
 }
 
 /// Makes a body of a prepared hull. Reads all points.
+///
+/// Status: ARGUMENT (shape->graph or graph_len is not that of a prepared hull, or count is 0), DIMENSION (shape->points.dimension is not 3),
+/// NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_hull_f64(body: Out<qdist_body_f64>, shape: In<qdist_hull_f64>) -> qdist_status {
     status(fill_hull(body, shape))
 }
 
 /// Makes a body of a large hull. Reads all points.
+///
+/// Status: as of qdist_body_hull.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_hull_large_f64(
     body: Out<qdist_body_f64>,

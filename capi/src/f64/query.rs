@@ -170,6 +170,8 @@ impl Defaults for qdist_options_f64 {
 }
 
 /// Writes the defaults.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_options_default_f64(options: Out<qdist_options_f64>) -> qdist_status {
     status(options.put(qdist_options_f64::defaults()))
@@ -177,6 +179,9 @@ pub extern "C" fn qdist_options_default_f64(options: Out<qdist_options_f64>) -> 
 
 /// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
 /// one of dimension 3. Swapping A and B turns the normal and swaps the points.
+///
+/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; CALLBACK (a or b); NONFINITE
+/// (also: the difference of the bodies is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_depth3_f64(
     solver: Out<qdist_solver>,
@@ -190,6 +195,9 @@ pub extern "C" fn qdist_depth3_f64(
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be
 /// NULL: the unit ball.
+///
+/// Status: those of a solver, of a set (a), of a unit set (q) and of options; CALLBACK (a or q); NONFINITE (also: the numbers of a became too
+/// large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve2_f64(
     solver: Out<qdist_solver>,
@@ -202,6 +210,8 @@ pub extern "C" fn qdist_solve2_f64(
 }
 
 /// The same in dimension 3.
+///
+/// Status: as of qdist_solve2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve3_f64(
     solver: Out<qdist_solver>,
@@ -214,6 +224,8 @@ pub extern "C" fn qdist_solve3_f64(
 }
 
 /// The same in dimension 4.
+///
+/// Status: as of qdist_solve2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve4_f64(
     solver: Out<qdist_solver>,
@@ -226,6 +238,8 @@ pub extern "C" fn qdist_solve4_f64(
 }
 
 /// The same in dimension 5.
+///
+/// Status: as of qdist_solve2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve5_f64(
     solver: Out<qdist_solver>,
@@ -238,6 +252,8 @@ pub extern "C" fn qdist_solve5_f64(
 }
 
 /// The same in dimension 6.
+///
+/// Status: as of qdist_solve2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve6_f64(
     solver: Out<qdist_solver>,

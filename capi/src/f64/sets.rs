@@ -219,6 +219,8 @@ impl<const N: usize> Support<f64, N> for CheckedSet<'_> {
 
 /// Makes a body of any set of dimension 3, in the identity pose. Checks and copies the set; what it points to must outlive the
 /// body.
+///
+/// Status: those of a set (set).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_set_f64(body: Out<qdist_body_f64>, set: In<qdist_set_f64>) -> qdist_status {
     status(Placed::of_set(body, set))

@@ -173,36 +173,48 @@ impl Placed<3> for qdist_body_f64 {
 }
 
 /// Makes a body of a sphere, in the identity pose, like all that follow.
+///
+/// Status: ARGUMENT (the radius negative), NONFINITE (the radius NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_sphere_f64(body: Out<qdist_body_f64>, shape: In<qdist_sphere_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a box.
+///
+/// Status: ARGUMENT (a half size negative), NONFINITE (a half size NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_box_f64(body: Out<qdist_body_f64>, shape: In<qdist_box_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of an ellipsoid.
+///
+/// Status: ARGUMENT (a semi axis negative), NONFINITE (a semi axis NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_ellipsoid_f64(body: Out<qdist_body_f64>, shape: In<qdist_ellipsoid_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a cylinder.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_cylinder_f64(body: Out<qdist_body_f64>, shape: In<qdist_cylinder_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a capsule.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_capsule_f64(body: Out<qdist_body_f64>, shape: In<qdist_capsule_f64>) -> qdist_status {
     status(fill(body, shape))
 }
 
 /// Makes a body of a cone.
+///
+/// Status: ARGUMENT (radius or half height negative), NONFINITE (radius or half height NaN, infinite or too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_body_cone_f64(body: Out<qdist_body_f64>, shape: In<qdist_cone_f64>) -> qdist_status {
     status(fill(body, shape))

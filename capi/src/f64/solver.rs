@@ -16,6 +16,8 @@ use core::ffi::c_void;
 
 /// Makes a solver of a dimension of 2 to 6 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
 /// which is that of the memory.
+///
+/// Status: DIMENSION (dimension), CAPACITY (max_vertices or max_facets), WORKSPACE_SIZE (bytes), ALIGNMENT (memory, to QDIST_WORKSPACE_ALIGN).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solver_init_f64(
     memory: Out<c_void>,

@@ -16,6 +16,8 @@ use super::unit_sets::qdist_unit_f64;
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in the dimension of the solver. Arguments as of
 /// qdist_solve2 to qdist_solve6.
+///
+/// Status: as of qdist_solve2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_in_span_f64(
     solver: Out<qdist_solver>,

@@ -104,6 +104,8 @@ pub struct qdist_segment_unit_f64 {
 gaps!(qdist_segment_unit_f64, dimension..);
 
 /// Makes the ball of this radius > 0 around the origin, of any dimension.
+///
+/// Status: ARGUMENT (radius is not above 0), NONFINITE (radius).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_ball_f64(unit: Out<qdist_unit_f64>, radius: f64) -> qdist_status {
     let ball = qdist_unit_f64 { extent: radius, ball_radius: radius, inner_radius: radius, ..UNKNOWN };
@@ -111,6 +113,9 @@ pub extern "C" fn qdist_unit_ball_f64(unit: Out<qdist_unit_f64>, radius: f64) ->
 }
 
 /// Makes an ellipsoid.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (semi axes or rotation), ROTATION (rotation:
+/// its columns are not orthonormal, to 1e-4).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_ellipsoid_f64(
     unit: Out<qdist_unit_f64>,
@@ -120,24 +125,32 @@ pub extern "C" fn qdist_unit_ellipsoid_f64(
 }
 
 /// Makes a box.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a half size is negative, or all are 0), NONFINITE (a half size, or the diagonal is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_box_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_box_unit_f64>) -> qdist_status {
     status(fill_box(unit, shape))
 }
 
 /// Makes a cross-polytope.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (a semi axis).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_cross_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_cross_unit_f64>) -> qdist_status {
     status(fill_cross(unit, shape))
 }
 
 /// Makes a segment.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (end is 0), NONFINITE (end).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_segment_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_segment_unit_f64>) -> qdist_status {
     status(fill_segment(unit, shape))
 }
 
 /// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
+///
+/// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0, or all points are), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_vertices_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_points_f64>) -> qdist_status {
     status(fill_vertices(unit, shape))

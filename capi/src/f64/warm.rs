@@ -47,6 +47,8 @@ pub struct qdist_tracker_f64 {
 gaps!(qdist_tracker_f64);
 
 /// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
+///
+/// Status: DIMENSION (dimension).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_tracker_init_f64(tracker: Out<qdist_tracker_f64>, dimension: u32) -> qdist_status {
     status(tracker.checked().and_then(|()| {
@@ -57,6 +59,9 @@ pub extern "C" fn qdist_tracker_init_f64(tracker: Out<qdist_tracker_f64>, dimens
 
 /// The certified lower bound of d after A has moved by at most `moved`, without a query; -DBL_MAX (float: FLT_MAX) where nothing is
 /// remembered, or where Q has no known inner_radius. Arguments as of qdist_solve_warm; Q may be NULL.
+///
+/// Status: DIMENSION (tracker->dimension), ARGUMENT (a direction of the tracker is neither of unit length nor 0), NONFINITE (moved, or a number
+/// of the tracker); those of a unit set (q).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_tracker_lower_after_f64(
     tracker: In<qdist_tracker_f64>,
@@ -85,6 +90,8 @@ pub extern "C" fn qdist_tracker_lower_after_f64(
 ///
 /// moved: A is the set of the last call with this tracker, moved or deformed so that no point of either is farther than this from the
 /// other (Hausdorff distance), in your unit; a negative number: not known, and only the directions are used.
+///
+/// Status: as of qdist_solve2, and of the tracker as of qdist_tracker_lower_after; NONFINITE (moved).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_warm2_f64(
     solver: Out<qdist_solver>,
@@ -99,6 +106,8 @@ pub extern "C" fn qdist_solve_warm2_f64(
 }
 
 /// The same in dimension 3.
+///
+/// Status: as of qdist_solve_warm2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_warm3_f64(
     solver: Out<qdist_solver>,
@@ -113,6 +122,8 @@ pub extern "C" fn qdist_solve_warm3_f64(
 }
 
 /// The same in dimension 4.
+///
+/// Status: as of qdist_solve_warm2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_warm4_f64(
     solver: Out<qdist_solver>,
@@ -127,6 +138,8 @@ pub extern "C" fn qdist_solve_warm4_f64(
 }
 
 /// The same in dimension 5.
+///
+/// Status: as of qdist_solve_warm2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_warm5_f64(
     solver: Out<qdist_solver>,
@@ -141,6 +154,8 @@ pub extern "C" fn qdist_solve_warm5_f64(
 }
 
 /// The same in dimension 6.
+///
+/// Status: as of qdist_solve_warm2.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_solve_warm6_f64(
     solver: Out<qdist_solver>,

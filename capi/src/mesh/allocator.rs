@@ -26,6 +26,8 @@ pub struct qdist_allocator {
 
 /// Sets the allocator of the process. The struct is not copied: it must stay valid and unchanged until the process ends. Once only, and before
 /// the first mesh: afterwards QDIST_ERROR_ALLOCATOR.
+///
+/// Status: NULL (also: alloc or free), ALLOCATOR (it is too late).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_set_allocator(allocator: In<qdist_allocator>) -> qdist_status {
     let set = || -> Check {

@@ -221,6 +221,8 @@ impl qdist_mesh_depth {
 }
 
 /// Writes the defaults, struct_size included.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_options_default(options: Out<qdist_mesh_options>) -> qdist_status {
     status(options.put(qdist_mesh_options::defaults()))
@@ -230,6 +232,9 @@ pub extern "C" fn qdist_mesh_options_default(options: Out<qdist_mesh_options>) -
 ///
 /// With QDIST_MESH_SIGMA and no `mass`, an A that is no solid is QDIST_ERROR_MESH_NOT_SOLID, and so is one with a metric of yours that
 /// is said to be at least QDIST_MESH_SIGMA. B may be a polygon soup.
+///
+/// Status: those of a pose (pose, any of options->poses) and of a metric; ARGUMENT (options->effort, or relative is negative), NONFINITE
+/// (options->relative).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_depth(
     pair: Out<qdist_mesh_pair>,

@@ -84,6 +84,9 @@ gaps!(qdist_mesh_mass);
 ///
 /// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
 /// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+///
+/// Status: MESH_EMPTY (triangle_count is 0), MESH_INDEX (triangles; also where vertex_count is 0), MESH_VERTEX (xyz), MESH_COLLINEAR (xyz),
+/// CAPACITY (vertex_count or triangle_count).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_create(
     xyz: In<f64>,
@@ -135,6 +138,8 @@ fn from_model(error: ModelError) -> (qdist_status, Option<usize>) {
 /// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
 /// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
 /// rounding cannot tell it, or a coordinate is above 1e50.
+///
+/// Status: MESH_NOT_SOLID (mesh).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_certify(mesh: In<qdist_mesh>, certified: Out<*mut qdist_mesh>) -> qdist_status {
     guard(|| {
@@ -153,6 +158,8 @@ pub extern "C" fn qdist_mesh_free(mesh: Out<qdist_mesh>) {
 }
 
 /// What is wrong with the mesh, and whether it bounds a solid. Intersections of the mesh with itself are not looked for. O(1).
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_check(mesh: In<qdist_mesh>, report: Out<qdist_mesh_report>) -> qdist_status {
     guard(|| {
@@ -189,6 +196,8 @@ pub extern "C" fn qdist_mesh_check(mesh: In<qdist_mesh>, report: Out<qdist_mesh_
 }
 
 /// Volume, centre of mass and inertia of the solid, or QDIST_ERROR_MESH_NOT_SOLID. Allocates for the time of the call; O(n log n).
+///
+/// Status: MESH_NOT_SOLID (mesh).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_integrate(mesh: In<qdist_mesh>, mass: Out<qdist_mesh_mass>) -> qdist_status {
     guard(|| {

@@ -170,6 +170,8 @@ impl qdist_mesh_contact {
 gaps!(qdist_mesh_contact);
 
 /// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_create(
     a: In<qdist_mesh>,
@@ -194,6 +196,8 @@ pub extern "C" fn qdist_mesh_pair_free(pair: Out<qdist_mesh_pair>) {
 
 /// Writes 1 to `collides` if A at the pose overlaps B, else 0. Solids overlap when one contains the other, too. Touching, which rounding cannot
 /// tell from overlap, counts: 0 is proved, to the last digit. Microseconds, and less where the last answer still holds.
+///
+/// Status: those of a pose (pose).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_collides(
     pair: Out<qdist_mesh_pair>,
@@ -210,6 +214,8 @@ pub extern "C" fn qdist_mesh_pair_collides(
 
 /// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
 /// microseconds (`make figures`), and less where the pose has changed little.
+///
+/// Status: those of a pose (pose).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_distance(
     pair: Out<qdist_mesh_pair>,
@@ -230,6 +236,8 @@ pub extern "C" fn qdist_mesh_pair_distance(
 ///
 /// Writes the first `capacity` contacts, and to `count` how many there are: more than `capacity` if there was no room for all. With a capacity
 /// of 0 `contacts` may be NULL. Allocates when there are more of them than at any call before.
+///
+/// Status: those of a pose (pose); ARGUMENT (margin is negative), NONFINITE (margin).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_contacts(
     pair: Out<qdist_mesh_pair>,

@@ -129,6 +129,8 @@ impl Defaults for qdist_mesh_budget {
 }
 
 /// Writes the defaults, struct_size included.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_budget_default(budget: Out<qdist_mesh_budget>) -> qdist_status {
     status(budget.put(qdist_mesh_budget::defaults()))
@@ -162,6 +164,8 @@ impl Tick {
 }
 
 /// Makes a tracker of two meshes, which may be the same: A moves, B rests. Allocates. The meshes may be freed before it.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_create(
     a: In<qdist_mesh>,
@@ -188,6 +192,9 @@ pub extern "C" fn qdist_mesh_tracker_free(tracker: Out<qdist_mesh_tracker>) {
 /// filled if the budget had a query left for it (distance_queries is 1), else 0. Outcomes and errors are those of qdist_mesh_pair_depth; after an
 /// error the tracker is as before.
 /// Allocates for certificates, when the memory of its queries must grow, and where very many features touch.
+///
+/// Status: those of a pose (pose) and of a metric; ARGUMENT (budget->effort; certify is neither 0 nor 1; relative is negative), NONFINITE
+/// (budget->relative).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_update(
     tracker: Out<qdist_mesh_tracker>,
@@ -214,6 +221,8 @@ pub extern "C" fn qdist_mesh_tracker_update(
 /// struct_size and `pose` are read. The pose counts from the next tick, if it is better there, or far from what is known. One collision query.
 ///
 /// taken: 1 if the pose is free, else 0, and nothing has changed. May be NULL.
+///
+/// Status: those of a pose (answer->pose).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_merge(
     tracker: Out<qdist_mesh_tracker>,
@@ -241,6 +250,8 @@ pub extern "C" fn qdist_mesh_tracker_merge(
 }
 
 /// Forgets everything: the next tick is the first.
+///
+/// Status: none but those of all functions.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_reset(tracker: Out<qdist_mesh_tracker>) -> qdist_status {
     guard(|| {

@@ -12,7 +12,7 @@
 //! `depth` is negative where the bodies are apart: minus the distance. `lb` and `ub` bracket it, `size` is the scale that errors are quoted
 //! against, and `n` is the unit direction from A to B, `nan` where it is not known.
 
-use std::str::{FromStr, SplitWhitespace};
+use std::str::FromStr;
 
 use qdist::nalgebra::{Matrix3, Vector3};
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Points, Sphere, Support};
@@ -59,26 +59,46 @@ impl Case {
     }
 }
 
-/// The cases of a file. The trouble names the case.
+/// The cases of a file. The trouble names the line and the case.
 pub fn parse(text: &str) -> Result<Vec<Case>, Trouble> {
-    let mut words = Words(text.split_whitespace());
+    let mut words = Words { left: Box::new(words(text)), line: 1 };
     let mut cases = Vec::new();
-    while let Some(word) = words.0.next() {
+    while let Some((line, word)) = words.left.next() {
+        words.line = line;
         if word != "CASE" {
-            return Err(format!("`{word}` where CASE is expected, after {} cases", cases.len()));
+            return Err(format!("line {line}: `{word}` where CASE is expected, after {} cases", cases.len()));
         }
-        let id = words.next("the case's name")?;
-        cases.push(words.case(id).map_err(|trouble| format!("case {id}: {trouble}"))?);
+        let mut next = || {
+            let id = words.next("the case's name")?;
+            words.case(id).map_err(|trouble| format!("case {id}: {trouble}"))
+        };
+        let case = next();
+        cases.push(case.map_err(|trouble| format!("line {}: {trouble}", words.line))?);
     }
     Ok(cases)
 }
 
+/// With the lines that they stand in.
+fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    (1..).zip(text.lines()).flat_map(|(number, line)| line.split_whitespace().map(move |word| (number, word)))
+}
+
 /// What is left of the file.
-struct Words<'a>(SplitWhitespace<'a>);
+struct Words<'a> {
+    left: Box<dyn Iterator<Item = (usize, &'a str)> + 'a>,
+    /// Of the last word.
+    line: usize,
+}
+
+/// How many numbers the shapes have, but for hulls.
+const NUMBERS: [(&str, usize); 6] =
+    [("sphere", 1), ("box", 3), ("ellipsoid", 3), ("cylinder", 2), ("capsule", 2), ("cone", 2)];
 
 impl<'a> Words<'a> {
     fn next(&mut self, what: &str) -> Result<&'a str, Trouble> {
-        self.0.next().ok_or(format!("the file ends before {what}"))
+        let (line, word) = self.left.next().ok_or(format!("the file ends before {what}"))?;
+        self.line = line;
+        Ok(word)
     }
 
     fn expect(&mut self, word: &str) -> Result<(), Trouble> {
@@ -103,7 +123,16 @@ impl<'a> Words<'a> {
         let bodies = [self.placed()?, self.placed()?];
         self.expect("T")?;
         let [depth, lower, upper, size, x, y, z] = self.numbers("the reference")?;
+        if let Some(bad) = [depth, lower, upper].iter().find(|x| !x.is_finite()) {
+            return Err(format!("{bad} is not finite, as the depth and its bracket must be"));
+        }
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(format!("the size {size} is not above 0 and finite"));
+        }
         let normal = (!x.is_nan()).then(|| Vector3::new(x, y, z));
+        if normal.is_some_and(|n| !((n.norm() - 1.0).abs() < 1e-3)) {
+            return Err(format!("the normal ({x}, {y}, {z}) is no unit vector, nor nan"));
+        }
         Ok(Case { id: id.to_string(), bodies, depth, lower, upper, size, normal })
     }
 
@@ -111,7 +140,14 @@ impl<'a> Words<'a> {
         self.expect("S")?;
         let kind = self.next("a shape's type")?.to_string();
         let count: usize = self.number("the count of a shape's numbers")?;
-        let count = if kind == "hull" { count.saturating_mul(3) } else { count };
+        let count = match NUMBERS.iter().find(|(name, _)| *name == kind) {
+            Some((_, takes)) if *takes != count => {
+                return Err(format!("{kind} has {count} numbers, where it takes {takes}"));
+            }
+            Some(_) => count,
+            None if kind == "hull" => count.saturating_mul(3),
+            None => return Err(no_shape(&kind)),
+        };
         let numbers = (0..count).map(|_| self.number("a shape's numbers")).collect::<Result<_, _>>()?;
         self.expect("P")?;
         let (rotation, translation) = (self.numbers("a rotation")?, self.numbers("a translation")?);
@@ -138,11 +174,13 @@ impl Shape {
             "capsule" => Box::new(Capsule::new(n(0)?, n(1)?).map_err(bad)?),
             "cone" => Box::new(Cone::new(n(0)?, n(1)?).map_err(bad)?),
             "hull" => Box::new(Points::new(points).map_err(bad)?),
-            kind => {
-                return Err(format!("{kind} is no shape: sphere, box, ellipsoid, cylinder, capsule, cone, hull are"));
-            }
+            kind => return Err(no_shape(kind)),
         })
     }
+}
+
+fn no_shape(kind: &str) -> Trouble {
+    format!("`{kind}` is no shape: sphere, box, ellipsoid, cylinder, capsule, cone, hull are")
 }
 
 impl Placed {
@@ -170,12 +208,25 @@ mod tests {
     }
 
     #[test]
-    fn trouble_names_the_case() {
-        let trouble = |from: &str, to: &str| parse(&CASE.replacen(from, to, 1)).unwrap_err();
-        assert!(trouble("CASE", "case").contains("`case` where CASE"));
-        assert!(trouble("0.5", "half").contains("case one: `half` is no number"));
-        assert!(trouble("S hull 1", "S hull 2").starts_with("case one: "));
-        assert!(trouble("T -1", "T").ends_with("the file ends before the reference"));
+    fn trouble_names_the_line_and_the_case() {
+        let told =
+            |from: &str, to: &str| parse(&CASE.replacen(from, to, 1).replace(" S hull", "\nS hull")).unwrap_err();
+        for (from, to, says) in [
+            ("CASE", "case", "line 1: `case` where CASE is expected"),
+            ("0.5", "half", "line 1: case one: `half` is no number"),
+            ("S hull 1", "S hull 2", "line 2: case one: `T` is no number"),
+            ("S hull 1", "S hull 99999999999999999999", "line 2: case one: `99999999999999999999` is no number"),
+            ("S hull 1", "S hull -1", "line 2: case one: `-1` is no number"),
+            ("S hull 1", "S torus 1", "line 2: case one: `torus` is no shape"),
+            ("sphere 1", "sphere 2", "line 1: case one: sphere has 2 numbers, where it takes 1"),
+            ("T -1", "T", "line 2: case one: the file ends before the reference"),
+            ("T -1", "T nan", "line 2: case one: NaN is not finite, as the depth"),
+            ("-1 -1 1", "-1 -inf 1", "line 2: case one: -inf is not finite, as the depth"),
+            ("1 nan nan nan", "0 nan nan nan", "line 2: case one: the size 0"),
+            ("nan nan nan", "0 0 2", "line 2: case one: the normal (0, 0, 2) is no unit"),
+        ] {
+            assert!(told(from, to).starts_with(says), "{to}: {}", told(from, to));
+        }
         let shape = Shape { kind: "torus".into(), numbers: vec![] };
         assert!(shape.build::<f64>(&[]).err().unwrap().contains("torus"));
         let shape = Shape { kind: "box".into(), numbers: vec![1.0] };

@@ -11,7 +11,7 @@ use clap::Args;
 use qdist::support::{Hull, Support, graph_len};
 use qdist::{Depth, HullFacet, Options, Real, Solver, Workspace, hull_facets, prepare_hull};
 
-use crate::{Trouble, written};
+use crate::{Trouble, flags, text, written};
 use cases::{Case, Shape};
 
 /// What a file looks like; the end of `--help`.
@@ -40,22 +40,18 @@ pub struct Request {
     /// In single precision
     #[arg(long)]
     f32: bool,
-    /// The tolerance, in units of the depth [default: 1e-6, with --f32 1e-4]
-    #[arg(long, value_name = "R", value_parser = tolerance)]
+    /// The tolerance, in units of the depth [default: 1e-6, with --f32 1e-4]; with 0 for both, as narrow as rounding and 50,000 points let it
+    #[arg(long, value_name = "R", value_parser = flags::tolerance_or_none, allow_negative_numbers = true)]
     relative: Option<f64>,
     /// The tolerance, in units of the case's size [default: 1e-12, with --f32 1e-5]
-    #[arg(long, value_name = "R", value_parser = tolerance)]
+    #[arg(long, value_name = "R", value_parser = flags::tolerance_or_none, allow_negative_numbers = true)]
     absolute: Option<f64>,
     /// One line for every case, and nothing else on the standard output
     #[arg(long)]
     csv: bool,
     /// Name the cases whose bracket is wrong or wide, or whose normal is off
-    #[arg(long, short)]
+    #[arg(long, short, conflicts_with = "csv")]
     verbose: bool,
-}
-
-fn tolerance(text: &str) -> Result<f64, Trouble> {
-    text.parse().ok().filter(|x: &f64| *x >= 0.0 && *x < 1.0).ok_or("not a number from 0 to 1".into())
 }
 
 const HEADER: &str = "id,family,outcome,lower,upper,nx,ny,nz,depth,iterations,support_calls,vertices,facets,ns";
@@ -84,8 +80,11 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
     let mut wrong = 0;
     for file in &request.files {
         let named = |trouble: Trouble| format!("{}: {trouble}", file.display());
-        let text = std::fs::read_to_string(file).map_err(|e| named(e.to_string()))?;
+        let text = text::read(file).map_err(named)?;
         let cases = cases::parse(&text).map_err(named)?;
+        if cases.is_empty() {
+            return Err(named("there is no case in it".into()));
+        }
         let found = match request.f32 {
             true => solve_all::<f32>(request, &cases),
             false => solve_all::<f64>(request, &cases),
@@ -238,6 +237,20 @@ mod tests {
     struct Line {
         #[command(flatten)]
         request: Request,
+    }
+
+    #[test]
+    fn what_may_not_be_asked() {
+        for line in ["depth", "depth a --verbose --csv", "depth a --f32 1"] {
+            assert!(Line::try_parse_from(line.split_whitespace()).is_err(), "{line}");
+        }
+        for flag in ["relative", "absolute"] {
+            for number in ["nan", "inf", "-1", "1", "x"] {
+                let line = format!("depth a --{flag} {number}");
+                let told = Line::try_parse_from(line.split_whitespace()).err().unwrap().to_string();
+                assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
+            }
+        }
     }
 
     /// Every bracket of a fixture is right and narrow, in both scalar types; a reference that is not true is noticed.

@@ -17,7 +17,8 @@
 //!   six, of the columns of its `R`.
 //!
 //! What else the shared data say (`source`, `description`, how a reference was found) is known and not read; so is every field whose name begins with an
-//! underscore. Any other field is an error (`Field::only`), and so is what contradicts itself. An error names grasp, contact and field.
+//! underscore. Any other field is an error (`Field::only`), and so is what contradicts itself. An error names grasp, contact and field, and says what is there and
+//! what may be.
 
 use std::collections::HashMap;
 
@@ -26,9 +27,8 @@ use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm,
 use serde_json::Value;
 
 use crate::Trouble;
-use crate::grasp::field::Field;
-use crate::grasp::keys::repeated;
 use crate::grasp::unit_sets::{Q, Shape};
+use crate::json::{self, Field, Known};
 
 /// One grasp of the file.
 pub struct Grasp {
@@ -87,19 +87,28 @@ pub struct Reference {
     pub tolerance: f64,
 }
 
-/// Fields that are read, and those that the shared data have for people.
-const FILE: [&[&str]; 2] = [&["instances"], &["schema", "note", "notes", "source", "description"]];
-const GRASP: [&[&str]; 2] = [
-    &["id", "contacts", "refs", "length_unit_m", "torque_scale", "L", "reference", "reference_point", "normalize"],
-    &["schema", "source", "licence_of_source", "description", "note", "notes", "qhull_exact"],
-];
-const CONTACT: [&[&str]; 2] = [
-    &["p", "n", "o", "t", "mu", "mus", "type", "finger", "force_cap", "J", "joints", "torque_limits"],
-    &["description", "note", "notes"],
-];
-const REFERENCE: [&[&str]; 2] = [
-    &["set", "norm", "Q", "d", "tol", "R"],
-    &[
+const FILE: Known = Known { fields: &["instances"], notes: &["schema", "note", "notes", "source", "description"] };
+const GRASP: Known = Known {
+    fields: &[
+        "id",
+        "contacts",
+        "refs",
+        "length_unit_m",
+        "torque_scale",
+        "L",
+        "reference",
+        "reference_point",
+        "normalize",
+    ],
+    notes: &["schema", "source", "licence_of_source", "description", "note", "notes", "qhull_exact"],
+};
+const CONTACT: Known = Known {
+    fields: &["p", "n", "o", "t", "mu", "mus", "type", "finger", "force_cap", "J", "joints", "torque_limits"],
+    notes: &["description", "note", "notes"],
+};
+const REFERENCE: Known = Known {
+    fields: &["set", "norm", "Q", "d", "tol", "R"],
+    notes: &[
         "force_closure",
         "certified_lower_bound",
         "certified_rel_gap",
@@ -124,79 +133,91 @@ const REFERENCE: [&[&str]; 2] = [
         "note",
         "notes",
     ],
-];
+};
+/// The kinds of Q, and the field that has its numbers.
+const KINDS: [(&str, Known); 5] = {
+    const fn of(fields: &'static [&'static str]) -> Known {
+        Known { fields, notes: &["description", "note", "notes"] }
+    }
+    [
+        ("ball", of(&["type", "radius", "S", "space"])),
+        ("ellipsoid", of(&["type", "semi_axes", "S", "space"])),
+        ("box", of(&["type", "half_widths", "S", "space"])),
+        ("cross_polytope", of(&["type", "half_axes", "S", "space"])),
+        ("segment", of(&["type", "wrench", "S", "space"])),
+    ]
+};
+
+/// What a file must be.
+const LIST: &str = "a list of grasps (or the file is one, or it is a grasp, which has `contacts`)";
 
 /// The grasps of a file's text; `normalize`: all normals become unit vectors.
 pub fn read(text: &str, normalize: bool) -> Result<Vec<Grasp>, Trouble> {
-    let data: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
-    if let Some((key, line)) = repeated(text) {
-        return Err(format!("line {line}: {key} is there twice in one object"));
-    }
-    let instances = match &data {
+    let data = json::parse(text)?;
+    let file = Field::of(&data, "");
+    let list = match &data {
+        Value::Object(fields) if fields.contains_key("contacts") => vec![Field::of(&data, "grasp 0")],
         Value::Object(fields) if fields.contains_key("instances") => {
-            Field { value: &data, at: "the file".into() }.only(FILE[0], FILE[1])?;
-            &data["instances"]
+            file.only(&FILE)?;
+            file.get("instances").things("grasp", "a list of grasps")?
         }
-        Value::Object(fields) if fields.contains_key("contacts") => &Value::Array(vec![data.clone()]),
-        Value::Array(_) => &data,
         Value::Object(_) => {
-            Field { value: &data, at: "the file".into() }.only(&["instances", "contacts"], FILE[1])?;
-            return Err("instances (missing): is not a list of grasps".into());
+            file.only(&Known { fields: &["instances", "contacts"], ..FILE })?;
+            return file.get("instances").must(LIST);
         }
-        _ => return Err("instances (missing): is not a list of grasps".into()),
+        _ => file.things("grasp", LIST)?,
     };
-    let Some(list) = instances.as_array() else { return Err("instances: is not a list of grasps".into()) };
     let mut seen = HashMap::new();
-    let unique = |(i, value): (usize, &Value)| {
-        let here = Field { value, at: format!("grasp {i}") };
+    let unique = |(i, here): (usize, &Field)| {
         let id = here.get("id").maybe(Field::name)?.unwrap_or_else(|| i.to_string());
         match seen.insert(id.clone(), i) {
-            Some(first) => Err(format!("grasp {id}, id: is that of grasp number {first} and of number {i}, from 0")),
-            None => grasp(id, value, normalize),
+            Some(first) => Err(format!("grasp {id}: `id` is that of grasp number {first} and of number {i}, from 0")),
+            None => grasp(id, here.value, normalize),
         }
     };
     list.iter().enumerate().map(unique).collect()
 }
 
 fn grasp(id: String, value: &Value, normalize: bool) -> Result<Grasp, Trouble> {
-    let top = Field { value, at: format!("grasp {id}") };
-    top.only(GRASP[0], GRASP[1])?;
+    let top = Field::of(value, format!("grasp {id}"));
+    top.only(&GRASP)?;
     let normalize = top.get("normalize").maybe(Field::flag)?.unwrap_or(normalize);
     // Positions in messages as they are counted in the file.
-    if !top.get("contacts").value.is_array() {
-        return top.get("contacts").wrong("is not a list");
-    }
-    let list = top.list("contacts").entries("contact")?;
+    let list = top.get("contacts").things("contact", "a list of contacts")?;
     let contacts: Vec<Touch> =
         list.iter().enumerate().map(|(i, c)| touch(i, c, normalize)).collect::<Result<_, _>>()?;
-    let refs = top.list("refs");
-    let queries = match refs.value {
-        Value::Null => Vec::new(),
-        Value::Array(_) => refs.entries("ref")?.iter().map(reference).collect::<Result<Vec<_>, _>>()?,
-        _ => return top.get("refs").wrong("is not a list"),
-    };
+    if contacts.is_empty() {
+        return top.get("contacts").must("a list of one contact or more");
+    }
+    let refs = top.get("refs").maybe(|refs| refs.things("ref", "a list of refs"))?.unwrap_or_default();
+    let queries = refs.iter().map(reference).collect::<Result<Vec<_>, _>>()?;
     let passive = contacts.iter().all(|c| c.contact.jacobian.is_none());
     if let (true, Some(i)) = (passive, queries.iter().position(|q| q.set == Set::Active)) {
-        return Err(format!("{}, ref {i}, set: is Wa, but no contact has a Jacobian", top.at));
+        return refs[i].get("set").wrong("no contact of the grasp has a Jacobian `J`");
     }
     let length_unit = top.get("length_unit_m").maybe(Field::positive)?;
-    let warnings = outward(&contacts).then(|| format!("{}: {OUTWARD}", top.at)).into_iter().collect();
+    let warnings = outward(&contacts).then(|| format!("grasp {id}: {OUTWARD}")).into_iter().collect();
     Ok(Grasp { length_unit, frame: frame(&top)?, id, contacts, queries, warnings })
 }
 
 /// Reference point and torque scale.
 fn frame(grasp: &Field) -> Result<WrenchFrame<f64>, Trouble> {
-    let one_of = |a: &'static str, b: &'static str| match (grasp.get(a).value.is_null(), grasp.get(b).value.is_null()) {
-        (false, false) => Err(format!("{}, {b}: says the same as {a}; only one of them, please", grasp.at)),
+    let one_of = |a: &'static str, b: &'static str| match (grasp.get(a).is_missing(), grasp.get(b).is_missing()) {
+        (false, false) => grasp.get(b).wrong(&format!("it says the same as `{a}`; only one of them, please")),
         (true, false) => Ok(grasp.get(b)),
         _ => Ok(grasp.get(a)),
     };
-    let scale = one_of("torque_scale", "L")?.maybe(Field::positive)?.unwrap_or(1.0);
+    let scale = one_of("torque_scale", "L")?;
     // In words it is a note: the positions refer to it already.
     let words = grasp.get("reference_point").value.is_string();
-    let reference = if words { grasp.get("reference") } else { one_of("reference", "reference_point")? };
-    let reference = reference.maybe(Field::vector)?.unwrap_or_else(Vector::zeros);
-    WrenchFrame::new(reference, scale).map_err(|error| format!("{}, torque_scale, reference: {error}", grasp.at))
+    let point = if words { grasp.get("reference") } else { one_of("reference", "reference_point")? };
+    let l = if scale.is_missing() { 1.0 } else { scale.positive()? };
+    let reference = if point.is_missing() { Vector::zeros() } else { point.vector()? };
+    let at_origin = WrenchFrame::new(Vector::zeros(), l).or_else(|error| scale.wrong(&error.to_string()))?;
+    if reference == Vector::<f64, 3>::zeros() {
+        return Ok(at_origin);
+    }
+    WrenchFrame::new(reference, l).or_else(|error| point.wrong(&error.to_string()))
 }
 
 const OUTWARD: &str = "all normals point away from the middle of the contacts; they must point into the object";
@@ -223,30 +244,33 @@ fn friction(field: &Field) -> Result<Friction<f64>, Trouble> {
         None => "frictionless".into(),
     };
     match (kind.as_str(), mu) {
-        ("frictionless", _) if slides => field.get("mu").wrong("is above 0 at a contact without friction"),
-        ("frictionless" | "hard", _) if mus > 0.0 => field.get("mus").wrong("is above 0 at a contact that is not soft"),
+        ("frictionless", _) if slides => field.get("mu").wrong("a contact without friction has none"),
+        ("frictionless" | "hard", _) if mus > 0.0 => field.get("mus").wrong("only a soft contact has it"),
         ("frictionless", _) => Ok(Friction::Frictionless),
         ("soft", Some(mu)) => Ok(Friction::Soft { mu, mus }),
         ("hard", Some(mu)) => Ok(Friction::Hard { mu }),
-        ("soft" | "hard", None) => field.get("mu").wrong("is needed for a contact with friction"),
-        _ => field.get("type").wrong("is not soft, hard or frictionless"),
+        ("soft" | "hard", None) => field.get("mu").must("a number, 0 or more, at a contact with friction"),
+        _ => field.get("type").must("soft, hard or frictionless"),
     }
 }
 
 fn touch(index: usize, field: &Field, normalize: bool) -> Result<Touch, Trouble> {
-    field.only(CONTACT[0], CONTACT[1])?;
+    field.only(&CONTACT)?;
     let words = |error: ContactError| {
         let key = match error {
             ContactError::Position => "p",
             ContactError::Normal => "n",
-            ContactError::Tangents => "o, t",
-            ContactError::Friction => "mu, mus",
+            ContactError::Tangents if field.get("o").is_missing() => "t",
+            ContactError::Tangents => "o",
+            // The larger of both is too large; negative ones are refused before.
+            ContactError::Friction if field.get("mus").value.as_f64() > field.get("mu").value.as_f64() => "mus",
+            ContactError::Friction => "mu",
             ContactError::ForceCap => "force_cap",
             _ => "J",
         };
         let hint =
             if error == ContactError::Normal { " (\"normalize\": true or --normalize makes it one)" } else { "" };
-        format!("{}, {key}: {error}{hint}", field.at)
+        field.get(key).wrong::<()>(&format!("{error}{hint}")).err().unwrap_or_default()
     };
     let direction = |key: &str| {
         let v: Vector<f64, 3> = field.get(key).vector()?;
@@ -256,7 +280,7 @@ fn touch(index: usize, field: &Field, normalize: bool) -> Result<Touch, Trouble>
         }
     };
     let mut contact = Contact::new(field.get("p").vector()?, direction("n")?, friction(field)?).map_err(words)?;
-    let tangent = |key: &str| if field.get(key).value.is_null() { Ok(None) } else { direction(key).map(Some) };
+    let tangent = |key: &str| if field.get(key).is_missing() { Ok(None) } else { direction(key).map(Some) };
     match (tangent("o")?, tangent("t")?) {
         (Some(o), Some(t)) => contact = contact.with_tangents(o, t).map_err(words)?,
         (Some(o), None) => contact = contact.with_tangents(o, contact.normal().cross(&o)).map_err(words)?,
@@ -266,92 +290,107 @@ fn touch(index: usize, field: &Field, normalize: bool) -> Result<Touch, Trouble>
     if let Some(cap) = field.get("force_cap").maybe(Field::number)? {
         contact = contact.with_force_cap(cap).map_err(words)?;
     }
+    let columns = |what: &str, found: usize, count: usize| match count {
+        0 => format!("the contact has no Jacobian `J` that it could belong to"),
+        _ => format!("these are {found} {what}, `J` has {count} columns"),
+    };
     let jacobian = field.get("J").maybe(|j| {
         let rows = j.rows()?;
-        let [n, o, t, spin] = rows.as_slice() else { return j.wrong("has not 4 rows") };
+        let [n, o, t, spin] = rows.as_slice() else { return j.must("a list of 4 rows, along n, o, t and about n") };
         Jacobian::new([n, o, t, spin]).map_err(words)
     })?;
     let count = jacobian.map_or(0, |j| j.joints());
-    if let Some(names) = field.get("joints").maybe(|names| names.entries("joint"))? {
+    if let Some(names) = field.get("joints").maybe(|names| names.entries("a list of names"))? {
         names.iter().try_for_each(|name| name.name().map(|_| ()))?;
         if names.len() != count {
-            return field.get("joints").wrong(&format!("has {} names, J has {count} columns", names.len()));
+            return field.get("joints").wrong(&columns("names", names.len(), count));
         }
     }
-    let limit = |joint: &Field| if joint.value.is_null() { Ok(f64::INFINITY) } else { joint.not_negative() };
+    let limit = |joint: &Field| if joint.is_missing() { Ok(f64::INFINITY) } else { joint.not_negative() };
     let limits = field.get("torque_limits").maybe(|list| {
-        let limits: Vec<f64> = list.entries("joint")?.iter().map(limit).collect::<Result<_, Trouble>>()?;
+        let limits: Vec<f64> = list.entries("a list of numbers")?.iter().map(limit).collect::<Result<_, Trouble>>()?;
         let fits = limits.len() == count && count > 0;
-        if fits { Ok(limits) } else { list.wrong(&format!("has {} numbers, J has {count} columns", limits.len())) }
+        if fits { Ok(limits) } else { list.wrong(&columns("numbers", limits.len(), count)) }
     })?;
     let name = field.get("finger").maybe(Field::name)?.unwrap_or_else(|| index.to_string());
     Ok(Touch { name, contact: HandContact { contact, jacobian }, limits })
 }
 
 fn reference(field: &Field) -> Result<Reference, Trouble> {
-    field.only(REFERENCE[0], REFERENCE[1])?;
-    let set = match field.get("set").text()?.to_lowercase().as_str() {
+    field.only(&REFERENCE)?;
+    let set = match word(field, "set")?.as_str() {
         "w" => Set::Passive,
         "wa" | "w^a" => Set::Active,
-        _ => return field.get("set").wrong("is not W or Wa"),
+        _ => return field.get("set").must("W or Wa"),
     };
-    let norm = match field.get("norm").text()?.to_lowercase().as_str() {
+    let norm = match word(field, "norm")?.as_str() {
         "l1" => Norm::L1,
         "linf" | "l-infinity" => Norm::LInf,
-        _ => return field.get("norm").wrong("is not L1 or Linf"),
+        _ => return field.get("norm").must("L1 or Linf"),
     };
     let d = field.get("d").maybe(Field::number)?;
     let tolerance = field.get("tol").maybe(Field::not_negative)?.unwrap_or(1e-9);
     Ok(Reference { set, norm, q: unit(field)?, d, tolerance })
 }
 
+/// A word whose capitals do not matter; none where there is no text.
+fn word(field: &Field, key: &str) -> Result<String, Trouble> {
+    Ok(field.get(key).value.as_str().unwrap_or_default().to_lowercase())
+}
+
 fn unit(reference: &Field) -> Result<Q, Trouble> {
     let q = reference.get("Q");
     if !q.value.is_object() {
-        return q.wrong("is not an object");
+        return q.must("an object, {\"type\": \"ball\"} for one");
     }
-    let kind = q.get("type").text()?.to_lowercase();
-    let numbers = match kind.as_str() {
-        "ball" => "radius",
-        "ellipsoid" => "semi_axes",
-        "box" => "half_widths",
-        "cross_polytope" => "half_axes",
-        _ => "wrench",
+    let kind = word(&q, "type")?;
+    let Some((_, known)) = KINDS.iter().find(|(name, _)| *name == kind) else {
+        return q.get("type").must("ball, ellipsoid, box, cross_polytope or segment");
     };
-    q.only(&["type", numbers, "S", "space"], &["description", "note", "notes"])?;
+    q.only(known)?;
+    let numbers = q.get(known.fields[1]);
     let shape = match kind.as_str() {
-        "ball" => Shape::Ball(q.get("radius").maybe(Field::number)?.unwrap_or(1.0)),
-        "ellipsoid" => Shape::Ellipsoid(q.get("semi_axes").numbers()?),
-        "box" => Shape::Box(q.get("half_widths").numbers()?),
-        "cross_polytope" => Shape::CrossPolytope(q.get("half_axes").numbers()?),
-        "segment" => Shape::Segment(q.get("wrench").numbers()?),
-        _ => return q.get("type").wrong("is not ball, ellipsoid, box, cross_polytope or segment"),
+        "ball" => Shape::Ball(numbers.maybe(Field::positive)?.unwrap_or(1.0)),
+        "segment" => Shape::Segment(numbers.numbers()?),
+        _ => {
+            let sizes =
+                numbers.entries("a list of numbers")?.iter().map(Field::not_negative).collect::<Result<_, _>>()?;
+            match kind.as_str() {
+                "ellipsoid" => Shape::Ellipsoid(sizes),
+                "box" => Shape::Box(sizes),
+                _ => Shape::CrossPolytope(sizes),
+            }
+        }
     };
-    let count = shape.numbers().map_or(6, <[f64]>::len);
+    let axes = axes(reference, &q, &shape, known.fields[1])?;
+    Q::new(shape, axes).or_else(|error| q.wrong(&error))
+}
+
+/// The axes along which the numbers of a Q are meant, where the file names them.
+fn axes(reference: &Field, q: &Field, shape: &Shape, key: &str) -> Result<Option<Vec<Vector<f64, 6>>>, Trouble> {
+    let count = shape.numbers().map(<[f64]>::len);
     let (s, r) = (q.get("S"), reference.get("R"));
-    let axes = if !s.value.is_null() {
-        Some((s.entries("row")?.iter().map(Field::vector).collect::<Result<Vec<_>, _>>()?, s.at))
-    } else if shape.numbers().is_some() && (count != 6 || !q.get("space").value.is_null()) {
-        if r.value.is_null() {
-            return q
-                .wrong(&format!("has {count} numbers, which is not 6, and neither R nor Q.S says along which axes"));
+    let (axes, of) = if !s.is_missing() {
+        (s.entries("a list of rows of 6 numbers")?.iter().map(Field::vector).collect::<Result<Vec<_>, _>>()?, s)
+    } else if count.is_some_and(|count| count != 6 || !q.get("space").is_missing()) {
+        if r.is_missing() {
+            return q.get(key).wrong("these are not 6 numbers, and neither `Q.S` nor `R` says along which axes");
         }
         let rows = r.rows()?;
         let columns = rows.first().map_or(0, Vec::len);
         if rows.len() != 6 || rows.iter().any(|row| row.len() != columns) {
-            return r.wrong("is not a matrix of 6 rows");
+            return r.must("a list of 6 rows, all of one length");
         }
-        Some(((0..columns).map(|k| Vector::from_fn(|i, _| rows[i][k])).collect(), r.at))
+        ((0..columns).map(|k| Vector::from_fn(|i, _| rows[i][k])).collect(), r)
     } else {
-        None
+        return Ok(None);
     };
-    if let Some((axes, at)) = &axes
-        && shape.numbers().is_some()
-        && axes.len() != count
-    {
-        return Err(format!("{at}: has {} axes, Q has {count} numbers", axes.len()));
+    match count {
+        Some(count) if axes.len() != count => {
+            of.wrong(&format!("these are {} axes, `Q.{key}` has {count} numbers", axes.len()))
+        }
+        _ => Ok(Some(axes)),
     }
-    Q::new(shape, axes.map(|(axes, _)| axes)).map_err(|error| format!("{}: {error}", q.at))
 }
 
 #[cfg(test)]
@@ -402,65 +441,85 @@ mod tests {
         };
         let of = |q: &str| query(r#""d": null"#).replacen(r#"{"type": "ball"}"#, q, 1);
         for (text, says) in [
-            (BARE.replacen("\"mu\"", "\"Mu\"", 1), "contact 0, Mu: is not known here; did you mean mu?"),
-            (contact(r#""force_caps": 2"#), "contact 0, force_caps: is not known here; did you mean force_cap?"),
+            (BARE.replacen("\"mu\"", "\"Mu\"", 1), "contact 0: `Mu` is not known here; did you mean `mu`?"),
+            (contact(r#""force_caps": 2"#), "contact 0: `force_caps` is not known here; did you mean `force_cap`?"),
             (
                 contact(r#""torquelimits": [1]"#),
-                "contact 0, torquelimits: is not known here; did you mean torque_limits?",
+                "contact 0: `torquelimits` is not known here; did you mean `torque_limits`?",
             ),
-            (contact(r#""normal": [0, 0, 1]"#), "contact 0, normal: is not known here"),
-            (grasp(r#""torque_scal": 1"#), "grasp 0, torque_scal: is not known here; did you mean torque_scale?"),
-            (grasp(r#""refences": []"#), "grasp 0, refences: is not known here; did you mean reference?"),
-            (query(r#""tolerance": 1"#), "grasp 0, ref 0, tolerance: is not known here"),
+            (contact(r#""normal": [0, 0, 1]"#), "contact 0: `normal` is not known here"),
+            (grasp(r#""torque_scal": 1"#), "grasp 0: `torque_scal` is not known here; did you mean `torque_scale`?"),
+            (grasp(r#""refences": []"#), "grasp 0: `refences` is not known here; did you mean `reference`?"),
+            (query(r#""tolerance": 1"#), "grasp 0, ref 0: `tolerance` is not known here"),
             (
                 of(r#"{"type": "ball", "radus": 2}"#),
-                "grasp 0, ref 0, Q, radus: is not known here; did you mean radius?",
+                "grasp 0, ref 0: `Q.radus` is not known here; did you mean `radius`?",
             ),
-            (of(r#"{"type": "box", "semi_axes": [1]}"#), "grasp 0, ref 0, Q, semi_axes: is not known here"),
-            (of("\"ball\""), "grasp 0, ref 0, Q: is not an object"),
+            (of(r#"{"type": "box", "semi_axes": [1]}"#), "grasp 0, ref 0: `Q.semi_axes` is not known here"),
+            (of("\"ball\""), "grasp 0, ref 0: `Q` is \"ball\"; it must be an object"),
             (
                 format!(r#"{{"instances": [{BARE}], "instance": 1}}"#),
-                "the file, instance: is not known here; did you mean instances?",
+                "`instance` is not known here; did you mean `instances`?",
             ),
-            (contact(r#""force_cap": -1"#), "grasp 0, contact 0, force_cap: the force cap is negative"),
-            (contact(r#""force_cap": "2""#), "grasp 0, contact 0, force_cap: is not a number"),
-            (contact(r#""finger": [1]"#), "grasp 0, contact 0, finger: is neither a text nor a number"),
-            (contact(r#""torque_limits": [1]"#), "grasp 0, contact 0, torque_limits: has 1 numbers, J has 0 columns"),
+            (contact(r#""force_cap": -1"#), "grasp 0, contact 0: `force_cap` is -1: the force cap is negative"),
+            (contact(r#""force_cap": "2""#), "grasp 0, contact 0: `force_cap` is \"2\"; it must be a number"),
+            (contact(r#""finger": [1]"#), "grasp 0, contact 0: `finger` is [1]; it must be a text or a number"),
+            (
+                contact(r#""torque_limits": [1]"#),
+                "grasp 0, contact 0: `torque_limits` is [1]: the contact has no Jacobian",
+            ),
             (
                 contact(&format!(r#"{jacobian}, "torque_limits": [1]"#)),
-                "grasp 0, contact 0, torque_limits: has 1 numbers, J has 2",
+                "grasp 0, contact 0: `torque_limits` is [1]: these are 1 numbers, `J` has 2",
             ),
             (
                 contact(&format!(r#"{jacobian}, "torque_limits": [1, -1]"#)),
-                "grasp 0, contact 0, torque_limits, joint 1: is negative",
+                "grasp 0, contact 0: `torque_limits[1]` is -1; it must be a number, 0 or more",
             ),
             (
                 contact(&format!(r#"{jacobian}, "joints": ["a"]"#)),
-                "grasp 0, contact 0, joints: has 1 names, J has 2 columns",
+                "grasp 0, contact 0: `joints` is [\"a\"]: these are 1 names, `J` has 2 columns",
             ),
-            (contact(r#""type": "frictionless""#), "grasp 0, contact 0, mu: is above 0 at a contact without friction"),
             (
-                contact(r#""type": "hard", "mus": 0.1"#),
-                "grasp 0, contact 0, mus: is above 0 at a contact that is not soft",
+                contact(r#""type": "frictionless""#),
+                "grasp 0, contact 0: `mu` is 0.5: a contact without friction has none",
             ),
-            (grasp(r#""L": 0"#), "grasp 0, L: is not above 0"),
-            (grasp(r#""L": 1, "torque_scale": 1"#), "grasp 0, L: says the same as torque_scale"),
-            (grasp(r#""reference": [1, 2]"#), "grasp 0, reference: has not 3 numbers"),
-            (grasp(r#""reference": "centre""#), "grasp 0, reference: is not a list"),
+            (contact(r#""type": "hard", "mus": 0.1"#), "grasp 0, contact 0: `mus` is 0.1: only a soft contact has it"),
+            (grasp(r#""L": 0"#), "grasp 0: `L` is 0; it must be a number above 0"),
+            (grasp(r#""L": 1, "torque_scale": 1"#), "grasp 0: `L` is 1: it says the same as `torque_scale`"),
+            (grasp(r#""reference": [1, 2]"#), "grasp 0: `reference` is [1,2]; it must be a list of 3 numbers"),
+            (grasp(r#""reference": "centre""#), "grasp 0: `reference` is \"centre\"; it must be a list"),
             (
                 grasp(r#""reference": [0, 0, 0], "reference_point": [0, 0, 0]"#),
-                "grasp 0, reference_point: says the same",
+                "grasp 0: `reference_point` is [0,0,0]: it says the same",
             ),
-            (grasp(r#""length_unit_m": "mm""#), "grasp 0, length_unit_m: is not a number"),
-            (grasp(r#""id": [1]"#), "grasp 0, id: is neither a text nor a number"),
-            (grasp(r#""normalize": 1"#), "grasp 0, normalize: is not true or false"),
-            (query(r#""tol": -1"#), "grasp 0, ref 0, tol: is negative"),
+            (grasp(r#""length_unit_m": "mm""#), "grasp 0: `length_unit_m` is \"mm\"; it must be a number above 0"),
+            (grasp(r#""id": [1]"#), "grasp 0: `id` is [1]; it must be a text or a number"),
+            (grasp(r#""normalize": 1"#), "grasp 0: `normalize` is 1; it must be true or false"),
+            (of(r#"{"type": "bal"}"#), "grasp 0, ref 0: `Q.type` is \"bal\"; it must be ball, ellipsoid, box"),
+            (of("{}"), "grasp 0, ref 0: `Q.type` is missing; it must be ball, ellipsoid, box"),
+            (of(r#"{"type": "ball", "radius": 0}"#), "grasp 0, ref 0: `Q.radius` is 0; it must be a number above 0"),
+            (
+                of(r#"{"type": "box", "half_widths": [1, 1, 1, 1, -1, 1]}"#),
+                "grasp 0, ref 0: `Q.half_widths[4]` is -1; it must be a number, 0 or more",
+            ),
+            (of(r#"{"type": "box", "half_widths": [0, 0, 0, 0, 0, 0]}"#), "it is no more than the origin"),
+            (of(r#"{"type": "segment"}"#), "grasp 0, ref 0: `Q.wrench` is missing; it must be a list of numbers"),
+            (contact(r#""mus": 1e300"#), "grasp 0, contact 0: `mus` is 1e300: a friction coefficient is"),
+            (contact(r#""force_cap": 1e300"#), "grasp 0, contact 0: `force_cap` is 1e300: the force cap is"),
+            (grasp(r#""L": 1e-300"#), "grasp 0: `L` is 1e-300: "),
+            (grasp(r#""reference": [0, 1e300, 0]"#), "grasp 0: `reference` is [0,1e300,0]: "),
+            (r#"{"contacts": []}"#.into(), "grasp 0: `contacts` is []; it must be a list of one contact or more"),
+            ("{}".into(), "`instances` is missing; it must be a list of grasps"),
+            ("7".into(), "the file is 7; it must be a list of grasps"),
+            ("".into(), "this is no JSON"),
+            (query(r#""tol": -1"#), "grasp 0, ref 0: `tol` is -1; it must be a number, 0 or more"),
             (
                 query(r#""d": 1"#).replacen("\"W\"", "\"Wa\"", 1),
-                "grasp 0, ref 0, set: is Wa, but no contact has a Jacobian",
+                "grasp 0, ref 0: `set` is \"Wa\": no contact of the grasp has a Jacobian",
             ),
-            ("[1]".into(), "grasp 0: is not an object"),
-            (contact("\n\"mu\": 0.4"), "line 2: mu is there twice in one object"),
+            ("[1]".into(), "grasp 0 is 1; it must be an object"),
+            (contact("\n\"mu\": 0.4"), "line 2: `mu` is there twice in one object"),
         ] {
             let told = refusal(&text);
             assert!(told.contains(says), "{text}: {told}");
@@ -592,28 +651,36 @@ mod tests {
     #[test]
     fn errors_say_where() {
         for (from, to, says) in [
-            ("0.5", "-0.5", "grasp 0, contact 0, mu: is negative"),
-            ("0.5", "-0.5, \"type\": \"frictionless\"", "grasp 0, contact 0, mu: is negative"),
-            ("0.5", "0.5, \"mus\": -0.1", "grasp 0, contact 0, mus: is negative"),
-            ("}]}", "}], \"refs\": {\"set\": \"W\"}}", "grasp 0, refs: is not a list"),
-            (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp 0, contact 0, p: has not 3 numbers"),
-            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0, p, entry 1 (missing): is not a number"),
-            (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp 0, contact 0, n: the normal is not a unit vector"),
-            (r#""p""#, r#""_p""#, "grasp 0, contact 0, p (missing): is not a list"),
-            ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0, mu: is negative"),
-            ("0.5", "0.5, \"J\": [[1], [1], [1]]", "grasp 0, contact 0, J: has not 4 rows"),
-            ("0.5", "0.5, \"J\": [[1], [1, 2], [1], [0]]", "grasp 0, contact 0, J: the Jacobian"),
-            ("0.5", "0.5, \"type\": \"wet\"", "grasp 0, contact 0, type: is not soft"),
+            ("0.5", "-0.5", "grasp 0, contact 0: `mu` is -0.5; it must be a number, 0 or more"),
             (
-                "\"contacts\"",
-                "\"id\": \"x\", \"contact\"",
-                "the file, contact: is not known here; did you mean contacts?",
+                "0.5",
+                "-0.5, \"type\": \"frictionless\"",
+                "grasp 0, contact 0: `mu` is -0.5; it must be a number, 0 or more",
             ),
-            ("}]}", "}], \"refs\": [{\"set\": \"V\"}]}", "grasp 0, ref 0, set: is not W or Wa"),
+            ("0.5", "0.5, \"mus\": -0.1", "grasp 0, contact 0: `mus` is -0.1; it must be a number, 0 or more"),
+            ("}]}", "}], \"refs\": {\"set\": \"W\"}}", "grasp 0: `refs` is {\"set\":\"W\"}; it must be a list of refs"),
+            (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp 0, contact 0: `p` is [0,1]; it must be a list of 3 numbers"),
+            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0: `p[1]` is missing; it must be a number"),
+            (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp 0, contact 0: `n` is [0,0,-2]: the normal is not a unit vector"),
+            (r#""p""#, r#""_p""#, "grasp 0, contact 0: `p` is missing; it must be a list of 3 numbers"),
+            ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0: `mu` is -0.5; it must be a number, 0 or more"),
+            (
+                "0.5",
+                "0.5, \"J\": [[1], [1], [1]]",
+                "grasp 0, contact 0: `J` is [[1],[1],[1]]; it must be a list of 4 rows",
+            ),
+            (
+                "0.5",
+                "0.5, \"J\": [[1], [1, 2], [1], [0]]",
+                "grasp 0, contact 0: `J` is [[1],[1,2],[1],[0]]: the Jacobian",
+            ),
+            ("0.5", "0.5, \"type\": \"wet\"", "grasp 0, contact 0: `type` is \"wet\"; it must be soft"),
+            ("\"contacts\"", "\"id\": \"x\", \"contact\"", "`contact` is not known here; did you mean `contacts`?"),
+            ("}]}", "}], \"refs\": [{\"set\": \"V\"}]}", "grasp 0, ref 0: `set` is \"V\"; it must be W or Wa"),
             (
                 "}]}",
                 "}], \"refs\": [{\"set\": \"W\", \"norm\": \"L1\", \"Q\": {\"type\": \"box\", \"half_widths\": [1]}}]}",
-                "grasp 0, ref 0, Q: has 1 numbers, which is not 6",
+                "grasp 0, ref 0: `Q.half_widths` is [1]: these are not 6 numbers",
             ),
         ] {
             let text = BARE.replacen(from, to, 1);
@@ -621,7 +688,7 @@ mod tests {
         }
         assert!(refusal("{").contains("line 1"));
         let named = BARE.replacen('{', "{\"id\": \"a\", ", 1);
-        assert!(refusal(&format!("[{named}, {BARE}, {named}]")).starts_with("grasp a, id: is that of grasp number 0"));
-        assert!(refusal(&format!("[{BARE}, {}]", named.replace("\"a\"", "0"))).starts_with("grasp 0, id:"));
+        assert!(refusal(&format!("[{named}, {BARE}, {named}]")).starts_with("grasp a: `id` is that of grasp number 0"));
+        assert!(refusal(&format!("[{BARE}, {}]", named.replace("\"a\"", "0"))).starts_with("grasp 0: `id`"));
     }
 }

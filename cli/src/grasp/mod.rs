@@ -12,9 +12,7 @@ use clap::Args;
 use qdist::grasp::Norm;
 
 pub mod csv;
-mod field;
 pub mod input;
-mod keys;
 mod plot;
 pub mod query;
 pub mod sets;
@@ -25,9 +23,9 @@ mod table1;
 pub mod unit_sets;
 mod words;
 
-use crate::{CLOSED, Trouble, written};
+use crate::{CLOSED, Trouble, flags, text, written};
 use input::{Grasp, Reference, Set};
-use query::Memory;
+use query::{Effort, Memory};
 use sets::Sets;
 use unit_sets::{Q, Shape};
 
@@ -72,13 +70,20 @@ pub struct Request {
     /// A picture for every reference: DIR/ID_REF.svg
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
-    /// The tolerance where Q is a ball or an ellipsoid; polytopes and segments are solved to 1e-10
-    #[arg(long, value_name = "R", default_value = "1e-4", value_parser = tolerance)]
+    /// The tolerance where Q is a ball or an ellipsoid, above 0 and below 1; polytopes and segments are solved to 1e-10
+    ///
+    /// In six dimensions a tenth of the tolerance takes up to some hundred times as long: below 1e-6 most queries end with their time.
+    #[arg(long, value_name = "R", default_value = "1e-4", value_parser = flags::tolerance, allow_negative_numbers = true)]
     relative: f64,
+    /// A query of a ball or an ellipsoid ends after so long, with the bracket so far and the outcome `interrupted`
+    #[arg(long, value_name = "S", default_value = "60", value_parser = flags::seconds, allow_negative_numbers = true)]
+    seconds: Duration,
 }
 
-fn tolerance(text: &str) -> Result<f64, Trouble> {
-    text.parse().ok().filter(|x: &f64| *x >= 0.0 && *x < 1.0).ok_or("not a number from 0 to 1".into())
+impl Request {
+    fn effort(&self) -> Effort {
+        Effort { relative: self.relative, time: self.seconds }
+    }
 }
 
 /// The queries of a grasp that comes without: W^a where joints make forces.
@@ -130,7 +135,7 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
             table::begin(out, grasp, &sets).map_err(written)?;
         }
         for (i, q) in grasp.queries.iter().enumerate() {
-            let found = query::solve(&mut solver, sets.get(q.set), q.set, q.norm, &q.q, request.relative)
+            let found = query::solve(&mut solver, sets.get(q.set), q.set, q.norm, &q.q, &request.effort())
                 .map_err(|trouble| format!("grasp {}, ref {i}: {trouble}", grasp.id))?;
             if let Some(contained) = table::contains(&found, q) {
                 known += 1;
@@ -162,13 +167,17 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
 pub fn run(request: &Request) -> Result<(), Trouble> {
     let mut out = io::stdout().lock();
     if request.table1 {
-        table1::print(&mut out, request.relative)?;
+        table1::print(&mut out, &request.effort())?;
     }
     if let Some(file) = &request.file {
         let named =
             |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{}: {trouble}", file.display()) };
-        let text = std::fs::read_to_string(file).map_err(|e| named(e.to_string()))?;
-        input::read(&text, request.normalize).and_then(|grasps| report(request, grasps, &mut out)).map_err(named)?;
+        let text = text::read(file).map_err(named)?;
+        let grasps = input::read(&text, request.normalize).map_err(named)?;
+        if let Some(folder) = &request.plot {
+            std::fs::create_dir_all(folder).map_err(|e| format!("--plot {}: {e}", folder.display()))?;
+        }
+        report(request, grasps, &mut out).map_err(named)?;
     }
     out.flush().map_err(written)
 }
@@ -199,7 +208,13 @@ mod tests {
 
     #[test]
     fn what_may_not() {
-        let lines = ["", "a b", "a --what", "a --plot", "a --relative 1", "a --relative nan", "--table1 --csv"];
+        let lines = ["", "a b", "a --what", "a --plot", "--table1 --csv"];
         lines.into_iter().for_each(|line| assert!(parse(line).is_err(), "{line}"));
+        for flag in ["relative", "seconds"] {
+            for number in ["nan", "inf", "-1", "0", "1e9", "x"] {
+                let told = parse(&format!("a --{flag} {number}")).unwrap_err().to_string();
+                assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
+            }
+        }
     }
 }

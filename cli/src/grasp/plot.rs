@@ -45,7 +45,6 @@ pub fn draw(
         grasp.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let file = folder.join(format!("{name}_{index}.svg"));
     let words = |error: Box<dyn Error>| format!("{}: {error}", file.display());
-    std::fs::create_dir_all(folder).map_err(|e| words(e.into()))?;
     let reference = &grasp.queries[index];
     let scene = Scene { wrenches, reference, found };
     let title = format!(

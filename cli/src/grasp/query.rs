@@ -1,5 +1,6 @@
 //! d_Q of a wrench set: what is asked of the library, and what is asked again.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use qdist::grasp::{Norm, WrenchSet};
@@ -19,8 +20,15 @@ pub type Memory = Workspace<f64, 6, 1024, 4096>;
 /// The tolerance for a Q of which every vertex is a convex problem.
 const POLYTOPE_RELATIVE: f64 = 1e-10;
 
-/// More than what a query needs in six dimensions for four digits; some minutes at worst.
+/// More than what a query needs in six dimensions for four digits; the time is over before.
 const MAX_ITERATIONS: u32 = 5_000_000;
+
+/// How narrow a bracket must be where Q is smooth, and how long it may take: what a query needs grows with up to the power of 5/2 of 1 / tolerance,
+/// so a tolerance that is within reach of the arithmetic need not be within that of a life.
+pub struct Effort {
+    pub relative: f64,
+    pub time: Duration,
+}
 
 /// A query that takes less is repeated for its time.
 const SAMPLE: Duration = Duration::from_millis(20);
@@ -42,8 +50,8 @@ fn is_open(answer: &Answer<f64, 6>, relative: f64) -> bool {
         && !(answer.upper - answer.lower <= relative * answer.upper)
 }
 
-fn smooth(relative: f64) -> Options<'static, f64, 6> {
-    Options { relative, max_iterations: Some(MAX_ITERATIONS), ..Options::default() }
+fn smooth(relative: f64, late: &dyn Fn() -> bool) -> Options<'_, f64, 6> {
+    Options { relative, max_iterations: Some(MAX_ITERATIONS), interrupt: Some(late), ..Options::default() }
 }
 
 /// A set, where it is measured, and by what.
@@ -55,8 +63,10 @@ struct Query<'a> {
     /// In the span of the set, or in all of R^6.
     within: bool,
     /// What is asked first, and the tolerance that will do.
-    options: Options<'static, f64, 6>,
+    options: Options<'a, f64, 6>,
     relative: f64,
+    /// Is the time over?
+    late: &'a dyn Fn() -> bool,
 }
 
 impl Query<'_> {
@@ -81,7 +91,7 @@ impl Query<'_> {
             return if open { self.further_on(solver, answer, &end) } else { answer };
         }
         if is_open(&answer, self.relative) {
-            let options = Options { guess: Some(answer.direction), ..smooth(self.relative) };
+            let options = Options { guess: Some(answer.direction), ..smooth(self.relative, self.late) };
             let found = self.once(solver, &self.set, &options);
             if !(found.upper - found.lower > answer.upper - answer.lower) {
                 answer = found;
@@ -125,29 +135,32 @@ impl Query<'_> {
     }
 }
 
-/// d_Q of the set; `relative` is the tolerance where Q is smooth.
+/// d_Q of the set.
 pub fn solve(
     solver: &mut Solver<'_, f64, 6>,
     wrenches: &Wrenches,
     set: Set,
     norm: Norm,
     q: &Q,
-    relative: f64,
+    effort: &Effort,
 ) -> Result<Found, Trouble> {
     let within = wrenches.holds(set, q);
     let end = q.segment().map(|end| if within { wrenches.projected(&end) } else { end });
     let set = WrenchSet::new(&wrenches.parts, norm);
+    let relative = effort.relative;
+    let before = Cell::new(Instant::now());
+    let late = || before.get().elapsed() > effort.time;
     let options = match q.is_polytope() {
         true => Options { relative: relative.min(POLYTOPE_RELATIVE), ..Options::default() },
-        false => smooth(relative),
+        false => smooth(relative, &late),
     };
-    let query = Query { set, unit: q.unit()?, end, within, options, relative };
+    let query = Query { set, unit: q.unit()?, end, within, options, relative, late: &late };
     let mut times = Vec::new();
     let begin = Instant::now();
     let answer = loop {
-        let before = Instant::now();
+        before.set(Instant::now());
         let answer = query.answer(solver);
-        times.push(before.elapsed());
+        times.push(before.get().elapsed());
         if begin.elapsed() > SAMPLE || times.len() == REPETITIONS {
             break answer;
         }
@@ -167,7 +180,8 @@ pub fn reach(solver: &mut Solver<'_, f64, 6>, wrenches: &Wrenches, norm: Norm, v
     let (set, unit) = (WrenchSet::new(&wrenches.parts, norm), Box::new(Segment::new(*v).ok()?));
     let options =
         Options { relative: 1e-4, absolute: 1e-6 * set.extent(), max_iterations: Some(200), ..Options::default() };
-    let query = Query { set, unit, end: Some(*v), within: wrenches.dimension() < 6, options, relative: 1e-4 };
+    let within = wrenches.dimension() < 6;
+    let query = Query { set, unit, end: Some(*v), within, options, relative: 1e-4, late: &|| false };
     let upper = query.answer(solver).upper.max(0.0);
     (upper < f64::MAX).then_some(upper)
 }
@@ -185,7 +199,23 @@ mod tests {
 
     fn ask(sets: &Sets, set: Set, norm: Norm, q: &Q) -> Found {
         let mut memory = Box::new(Memory::new());
-        solve(&mut memory.solver(), sets.get(set), set, norm, q, 1e-4).unwrap()
+        let effort = Effort { relative: 1e-4, time: Duration::from_secs(600) };
+        solve(&mut memory.solver(), sets.get(set), set, norm, q, &effort).unwrap()
+    }
+
+    /// A tolerance that is out of reach ends with the time, and a bracket that is true.
+    #[test]
+    fn the_time_is_the_limit() {
+        let grasp = &input::read(FIXTURE, false).unwrap()[0];
+        let sets = Sets::of_grasp(grasp).unwrap();
+        let query = &grasp.queries[0];
+        let effort = Effort { relative: 1e-15, time: Duration::from_millis(100) };
+        let mut memory = Box::new(Memory::new());
+        let wrenches = sets.get(query.set);
+        let found = solve(&mut memory.solver(), wrenches, query.set, query.norm, &query.q, &effort).unwrap();
+        assert_eq!((query.q.kind(), found.answer.outcome), ("ball", Outcome::Interrupted));
+        assert_eq!(table::contains(&found, query), Some(true));
+        assert!(found.time >= effort.time && found.time < Duration::from_secs(20), "{:?}", found.time);
     }
 
     /// Every reference is in a bracket as narrow as promised, and a row of numbers that mean the same.

@@ -9,7 +9,7 @@ use qdist::Vector;
 use qdist::grasp::{Contact, ContactError, Friction, HandContact, Jacobian, Norm};
 
 use crate::grasp::input::Set;
-use crate::grasp::query::{self, Memory};
+use crate::grasp::query::{self, Effort, Memory};
 use crate::grasp::sets::Sets;
 use crate::grasp::unit_sets::{Q, Shape};
 use crate::{Trouble, written};
@@ -61,7 +61,7 @@ fn shapes() -> [Shape; 5] {
 }
 
 /// The table.
-pub fn print(out: &mut dyn Write, relative: f64) -> Result<(), Trouble> {
+pub fn print(out: &mut dyn Write, effort: &Effort) -> Result<(), Trouble> {
     let sets = Sets::new(&hand().map_err(|e| e.to_string())?)?;
     let mut memory = Box::new(Memory::new());
     let mut solver = memory.solver();
@@ -74,7 +74,7 @@ pub fn print(out: &mut dyn Write, relative: f64) -> Result<(), Trouble> {
         let unit = Q::new(shape, None)?;
         let mut line = format!("({name}) {q:<18}");
         for (set, Printed(d, k, time)) in [(Set::Passive, passive), (Set::Active, active)] {
-            let found = query::solve(&mut solver, sets.get(set), set, Norm::LInf, &unit, relative)?;
+            let found = query::solve(&mut solver, sets.get(set), set, Norm::LInf, &unit, effort)?;
             let (answer, dimension) = (&found.answer, found.dimension);
             let gap = (answer.upper - answer.lower).max(0.0);
             let (published, dim) = match set {
@@ -100,6 +100,7 @@ mod tests {
     fn rows_to_four_digits() {
         let sets = Sets::new(&hand().unwrap()).unwrap();
         let mut memory = Box::new(Memory::new());
+        let effort = Effort { relative: 1e-4, time: std::time::Duration::from_secs(600) };
         let root = |x: f64| x.sqrt();
         let corner = |n: f64| 0.41 / (0.41 + 2.3 * root(n));
         let exact = [
@@ -112,7 +113,7 @@ mod tests {
         for ((shape, Row(name, _, passive, active)), exact) in shapes().into_iter().zip(&ROWS).zip(exact) {
             let q = Q::new(shape, None).unwrap();
             for ((set, printed), d) in [(Set::Passive, passive), (Set::Active, active)].into_iter().zip(exact) {
-                let found = query::solve(&mut memory.solver(), sets.get(set), set, Norm::LInf, &q, 1e-4).unwrap();
+                let found = query::solve(&mut memory.solver(), sets.get(set), set, Norm::LInf, &q, &effort).unwrap();
                 let (lower, upper) = (found.answer.lower, found.answer.upper);
                 assert!(lower <= d + 1e-13 && d - 1e-13 <= upper, "{name} {set:?}: {d} not in {lower} {upper}");
                 assert!(upper - lower <= 1e-4 * upper && (upper - d).abs() < 1e-6, "{name} {set:?}");

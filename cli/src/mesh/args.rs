@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, value_parser};
 use qdist::mesh::Effort;
 use qdist::nalgebra::Isometry3;
 
@@ -16,7 +16,7 @@ const FILES: &str = r#"The least that a file of queries must say:
 
   {"queries": [{"id": "corner", "A": "box.obj", "B": "bracket.obj", "pose0": {"q_wxyz": [1, 0, 0, 0], "t": [0.8, 0.9, 0.5]}}]}
 
-`A` and `B` are relative to the file. What is known of the answer may be there, too, and is compared: `disp_ub`, `sqrt_sigma_ub` (or its square,
+`A` and `B` are relative to the file. A name that begins with _ is a note, any field that is not known an error. What is known of the answer may be there, too, and is compared: `disp_ub`, `sqrt_sigma_ub` (or its square,
 `sigma_ub`) the best values known, `disp_lb`, `sqrt_sigma_lb` lower bounds, `exact_disp`, `exact_sqrt_sigma` the truth."#;
 
 /// How little must A move, rotations included, to be free of B?
@@ -51,11 +51,12 @@ pub struct Request {
     #[arg(long, default_value = "default")]
     effort: Level,
     /// Number of the random sequence
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Draw N contact samples of every pair first; the 6 nearest to a query are seeds too
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub samples: usize,
+    /// Draw N contact samples of every pair first, a million at most; the 6 nearest to a query are seeds too
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(..=1_000_000))]
+    #[arg(allow_negative_numbers = true)]
+    pub samples: u32,
     /// Nothing but CSV on the standard output
     #[arg(long)]
     pub csv: bool,
@@ -166,5 +167,12 @@ mod tests {
             assert!(parse(line).is_err(), "{line}");
         }
         assert!(parse("--queries q --metric l2").unwrap_err().to_string().contains("--metric"));
+        for flag in ["seed", "samples"] {
+            for number in ["nan", "inf", "-1", "0.5", "99999999999999999999", "x"] {
+                let told = parse(&format!("--queries q --{flag} {number}")).unwrap_err().to_string();
+                assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
+            }
+        }
+        assert!(parse("--queries q --samples 1000001").unwrap_err().to_string().contains("--samples"));
     }
 }

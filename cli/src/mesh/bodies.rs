@@ -21,7 +21,7 @@ impl Bodies {
         for query in queries {
             for (field, file) in [("A", &query.a), ("B", &query.b)] {
                 tell(file);
-                bodies.read(file).map_err(|trouble| format!("{}: `{field}`: {trouble}", query.id))?;
+                bodies.read(file).map_err(|trouble| format!("query {}: `{field}`: {trouble}", query.id))?;
             }
         }
         Ok(bodies)
@@ -79,7 +79,7 @@ mod tests {
     fn a_missing_file_is_named_with_its_query_and_field() {
         let query = Query::new("one".into(), "missing.obj".into(), "b.obj".into(), Isometry3::identity());
         let trouble = Bodies::of(&[query], |_| ()).err().unwrap_or_default();
-        assert!(trouble.starts_with("one: `A`: missing.obj: "), "{trouble}");
+        assert!(trouble.starts_with("query one: `A`: missing.obj: "), "{trouble}");
         assert!(Bodies::of(&[], |_| ()).is_ok_and(|bodies| bodies.iter().next().is_none()));
     }
 }

@@ -102,7 +102,7 @@ fn answer_all(
                 bar.say(&format!("{}: {made} contact samples", query.id));
                 false
             };
-            let samples = ContactSamples::new(a, b, request.samples, request.seed, Some(&mut tell));
+            let samples = ContactSamples::new(a, b, request.samples as usize, request.seed, Some(&mut tell));
             (DepthSolver::new(a, b), samples)
         });
         let mut before = None;

@@ -171,6 +171,10 @@ pub(super) fn tolerance(tolerance: f64) -> f64 {
 /// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
 /// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
 /// which: NULL; or after an error that is a contact's, its index is written there.
+///
+/// Status: ARGUMENT (active is neither 0 nor 1, or count is 0), FRAME (frame), TOLERANCE (rank_tolerance, where a contact has a Jacobian that
+/// counts); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS, CONTACT_FRICTION (friction, mu or mus),
+/// CONTACT_CAP, CONTACT_WRENCH; with active also CONTACT_JACOBIAN (actuated, joints or jacobian).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_primitives_f64(
     contacts: In<qdist_contact_f64>,
@@ -200,6 +204,8 @@ pub extern "C" fn qdist_primitives_f64(
 }
 
 /// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
+///
+/// Status: FRAME (frame), ARGUMENT (contact->actuated is 0), TOLERANCE (rank_tolerance); of the contact, as of qdist_primitives.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_active_forces_f64(
     contact: In<qdist_contact_f64>,
@@ -227,6 +233,9 @@ pub extern "C" fn qdist_active_forces_f64(
 /// of vector j is basis[6 * j + k]. Unused vectors are 0.
 ///
 /// rank_tolerance: of singular values relative to the largest, each direction having length 1; 0: 1e-9 (float: 4e-6).
+///
+/// Status: ARGUMENT (count is 0, an `empty` is neither 0 nor 1, or a `rounding` is negative), CONTACT_WRENCH (a number of a primitive), TOLERANCE
+/// (rank_tolerance).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_wrench_subspace_f64(
     primitives: In<qdist_primitive_f64>,

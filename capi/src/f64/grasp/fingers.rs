@@ -127,6 +127,9 @@ impl Wrenches for qdist_finger_wrenches_f64 {
 ///
 /// 5 microseconds where no limit counts; a millisecond or more, with 80 KB of stack in double, where there are limits and several contacts (`make
 /// figures`, `make stack`).
+///
+/// Status: ARGUMENT (model, or count is 0), CAPACITY (count is above 4), FRAME (frame), TORQUE_LIMIT (limits), TOLERANCE (rank_tolerance); of a
+/// contact, as of qdist_primitives; CONTACT_JACOBIAN also where its joints are not those of the first.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_finger_init_f64(
     finger: Out<qdist_finger_f64>,
@@ -186,6 +189,8 @@ fn write(finger: &Out<qdist_finger_f64>, contacts: u32, torque_scale: f64, made:
 }
 
 /// Makes a set of a list of fingers, for the same questions as that of primitives. Its `error` is larger by the precision of the programs.
+///
+/// Status: ARGUMENT (wrenches->norm, or count is 0), FINGER (one of wrenches->fingers), NONFINITE (all of them together are too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_finger_wrenches_f64(
     set: Out<qdist_set_f64>,
@@ -198,6 +203,8 @@ pub extern "C" fn qdist_set_finger_wrenches_f64(
 /// forces[4 * i + 3], as qdist_contact_force has it. `forces` has room for 4 * contacts numbers.
 ///
 /// QDIST_ERROR_CALLBACK: the program was not solved (QDIST_CALLBACK_UNSOLVED); nothing was written.
+///
+/// Status: FINGER (finger), NONFINITE (direction), CALLBACK (finger).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_finger_forces_f64(
     finger: In<qdist_finger_f64>,
@@ -227,6 +234,8 @@ pub extern "C" fn qdist_finger_forces_f64(
 /// qdist_contact_force has it; 0 for contacts that are not there. They keep friction, and `upper` times caps and limits.
 ///
 /// The bracket is as wide as the error bound of the fingers makes it: in float ask for a relative gap of 1e-2.
+///
+/// Status: those of qdist_set_finger_wrenches (wrenches), and of qdist_contact_forces.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_finger_contact_forces_f64(
     wrenches: In<qdist_finger_wrenches_f64>,

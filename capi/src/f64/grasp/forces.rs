@@ -78,6 +78,8 @@ versioned!(qdist_forces_f64);
 
 /// A wrench in the coordinates of the sets: a force on the object, and a moment about the frame's reference point, in units of force and force
 /// times position. `force` and `moment` are three numbers, `wrench` six.
+///
+/// Status: FRAME (frame), NONFINITE (force or moment, or the wrench is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_wrench_f64(
     frame: In<qdist_wrench_frame_f64>,
@@ -102,6 +104,9 @@ pub extern "C" fn qdist_wrench_f64(
 /// memory: NULL, or what the last call left, and where this one leaves its own. external: six numbers, see qdist_wrench.
 /// shares: room for 6 * count numbers: share i, shares[6 * i] to shares[6 * i + 5], becomes the wrench that contact i exerts; their sum is the
 /// negative of the external wrench. qdist_contact_force makes a force of it.
+///
+/// Status: those of qdist_set_wrenches (wrenches); ARGUMENT (memory->count, or options->relative or limit is negative), NONFINITE (a number of
+/// memory, external or options), CALLBACK (wrenches: see callback_code).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_contact_forces_f64(
     wrenches: In<qdist_wrenches_f64>,
@@ -188,6 +193,9 @@ fn convert(options: In<qdist_force_options_f64>) -> Check<ForceOptions<f64>> {
 
 /// The contact force that exerts a wrench: four numbers, along n, o, t, and the spin moment about n, in units of force and force times position.
 /// What friction does not allow at all is 0; a force outside of the cone by rounding is moved onto it.
+///
+/// Status: FRAME (frame), NONFINITE (share, or the force is too large); of the contact: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
+/// CONTACT_FRICTION, CONTACT_CAP.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_contact_force_f64(
     contact: In<qdist_contact_f64>,

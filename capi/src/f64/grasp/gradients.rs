@@ -62,6 +62,9 @@ gaps!(qdist_contact_gradient_f64);
 /// tolerance of 1e-2 is usually enough.
 ///
 /// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+///
+/// Status: ARGUMENT (active is neither 0 nor 1; count is 0, or not that of wrenches; a flag of result), NONFINITE (a number of result), FRAME
+/// (frame), TOLERANCE (rank_tolerance), those of qdist_set_wrenches (wrenches) and of a unit set (q); of a contact, as of qdist_primitives.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_grasp_gradients_f64(
     wrenches: In<qdist_wrenches_f64>,

@@ -93,6 +93,8 @@ fn fill(preset: Out<qdist_preset_f64>, tool: qdist_tool, made: Result<Preset<f64
 
 /// GraspIt! with an object of this centre of gravity, three numbers, and largest radius about it. millimetre: its unit of length in yours. A
 /// soft contact's mus is its 8 sqrt(a b) / 15 mu, with a and b the semi axes of the contact ellipse.
+///
+/// Status: ARGUMENT (norm), FRAME (center, max_radius or millimetre).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_preset_graspit_f64(
     preset: Out<qdist_preset_f64>,
@@ -112,6 +114,9 @@ pub extern "C" fn qdist_preset_graspit_f64(
 /// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
 /// configured the median of the three coordinates of the upper corner of the bounding box. Its defaults: 8 sides, and 0.005 for the radius.
 /// Its normal force is the cosine between closing direction and normal: set force_cap after qdist_preset_contact.
+///
+/// Status: ARGUMENT (finger_radius is negative, or sides is below 3), NONFINITE (finger_radius), FRAME (center or
+/// torque_scale), CONTACT_WRENCH (finger_radius is above 1.4e146, float: 4.5e15).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_preset_dex_net_f64(
     preset: Out<qdist_preset_f64>,
@@ -131,6 +136,8 @@ pub extern "C" fn qdist_preset_dex_net_f64(
 
 /// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
 /// qdist_opposed_mean.
+///
+/// Status: ARGUMENT (sides is below 3), FRAME (lamb).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_preset_frogger_f64(preset: Out<qdist_preset_f64>, sides: u32, lamb: f64) -> qdist_status {
     let make = || {
@@ -142,6 +149,8 @@ pub extern "C" fn qdist_preset_frogger_f64(preset: Out<qdist_preset_f64>, sides:
 
 /// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
 /// edges. Of the preset only `tool` counts.
+///
+/// Status: ARGUMENT (preset->tool); of the contact: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_FRICTION.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_preset_contact_f64(
     preset: In<qdist_preset_f64>,

@@ -109,6 +109,9 @@ impl Wrenches for qdist_pyramid_wrenches_f64 {
 }
 
 /// How many edges the pyramid of a contact with this friction has.
+///
+/// Status: of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE (length), FRAME (length of QDIST_LAYOUT_GRASPIT);
+/// CONTACT_FRICTION (friction).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_pyramid_edges_f64(
     layout: In<qdist_layout_f64>,
@@ -140,6 +143,10 @@ fn like(friction: qdist_friction) -> Friction<f64> {
 ///
 /// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
 /// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+///
+/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE
+/// (length), FRAME (length of QDIST_LAYOUT_GRASPIT); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
+/// CONTACT_FRICTION, CONTACT_CAP, CONTACT_WRENCH.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_pyramids_f64(
     contacts: In<qdist_contact_f64>,
@@ -200,6 +207,9 @@ fn from_cone(cone: &PyramidalCone<'_, f64>, edges: In<f64>) -> qdist_pyramid_f64
 }
 
 /// Makes a set of a list of pyramids. Reads all edges.
+///
+/// Status: ARGUMENT (wrenches->norm; count of them or of the edges of one is 0; extent or error negative), NONFINITE (extent or error, or all of
+/// them together), CONTACT_WRENCH (an edge).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_pyramid_wrenches_f64(
     set: Out<qdist_set_f64>,
@@ -210,6 +220,9 @@ pub extern "C" fn qdist_set_pyramid_wrenches_f64(
 
 /// Minus the mean of all edges, as a segment for Q: d of the set with QDIST_L1 is then the t of FRoGGeR's min-weight metric N l = t / (1 + t), which
 /// increases in t, so that it takes a bracket to a bracket. Its default asks for N l = 0.3. QDIST_ERROR_ARGUMENT: the mean is 0, and the metric 1.
+///
+/// Status: ARGUMENT (count of them or of the edges of one is 0; extent or error negative; or the mean is 0), NONFINITE (extent or error),
+/// CONTACT_WRENCH (an edge).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_opposed_mean_f64(
     segment: Out<qdist_segment_unit_f64>,

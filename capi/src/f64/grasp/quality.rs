@@ -55,6 +55,8 @@ versioned!(qdist_best_f64);
 /// Is the origin in the interior of the set, of dimension 6? Ends at the first proof of either answer, usually after some 10 to 100 calls of the
 /// support function; what lies between, d above 0 by little more than rounding, is undecided. The torque scale does not matter for sets of wrenches,
 /// whose rounding is known coordinate by coordinate. Tolerances and threshold of the options are not used.
+///
+/// Status: those of a solver, of a set (set) and of options. (A callback that fails leaves the question undecided.)
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_force_closure_f64(
     solver: Out<qdist_solver>,
@@ -88,6 +90,9 @@ pub extern "C" fn qdist_force_closure_f64(
 /// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
 /// better than the best so far. A threshold in the options is not used; `interrupt` leaves the set at hand and those after it with the bounds
 /// that they have.
+///
+/// Status: those of a solver, of a set (any of sets), of a unit set (q) and of options; ARGUMENT (count is 0), CALLBACK (a set or q), NONFINITE
+/// (also: the numbers of a set became too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_best_of6_f64(
     solver: Out<qdist_solver>,

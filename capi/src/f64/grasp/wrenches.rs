@@ -106,6 +106,9 @@ pub(super) fn behind(set: &qdist_set_f64) -> Option<WrenchSet<'_, f64>> {
 }
 
 /// Makes a set of a list of primitives. Reads all of them.
+///
+/// Status: ARGUMENT (wrenches->norm, count is 0, an `empty` is neither 0 nor 1, or a `rounding` is negative), CONTACT_WRENCH (a number of a
+/// primitive), NONFINITE (all of them together are too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_wrenches_f64(set: Out<qdist_set_f64>, wrenches: In<qdist_wrenches_f64>) -> qdist_status {
     status(Wrenches::fill(set, wrenches))

@@ -1,0 +1,43 @@
+//! The numbers of the command line. Each says what it may be, and clap names the flag.
+
+use std::time::Duration;
+
+use crate::Trouble;
+
+/// A relative tolerance that can be reached.
+pub fn tolerance(text: &str) -> Result<f64, Trouble> {
+    within(text, |x| x > 0.0 && x < 1.0).ok_or("not a number above 0 and below 1".into())
+}
+
+/// A tolerance of which 0 means: as narrow as rounding lets it.
+pub fn tolerance_or_none(text: &str) -> Result<f64, Trouble> {
+    within(text, |x| (0.0..1.0).contains(&x)).ok_or("not a number from 0 up, below 1".into())
+}
+
+/// Some time: a millisecond to a day.
+pub fn seconds(text: &str) -> Result<Duration, Trouble> {
+    let found = within(text, |x| (1e-3..=86_400.0).contains(&x)).map(Duration::from_secs_f64);
+    found.ok_or("not a number of seconds from 0.001 to 86400".into())
+}
+
+fn within(text: &str, fits: impl Fn(f64) -> bool) -> Option<f64> {
+    text.parse().ok().filter(|x| fits(*x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_make_no_sense() {
+        for text in ["", "x", "nan", "NaN", "inf", "-inf", "-1", "-0.1", "1", "2", "1e999", "1e-999x"] {
+            assert!(tolerance(text).is_err() && tolerance_or_none(text).is_err(), "{text}");
+        }
+        assert!(tolerance("0").is_err() && tolerance("1e-999").is_err());
+        assert_eq!((tolerance("1e-6"), tolerance_or_none("0")), (Ok(1e-6), Ok(0.0)));
+        for text in ["", "nan", "inf", "-1", "0", "1e9"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+    }
+}
