@@ -51,6 +51,11 @@ refused 'no folder' record-compare "A=$folder" "B=$folder/nothing"
 refused 'not `now`' demo now
 refused 'does not know OUT' demo OUT=out
 
+# make takes them from the environment, too.
+export CASES=nofile
+refused 'no file nofile' compare
+unset CASES
+
 # What is right reaches make.
 for command in 'compare CASES=tests/data/std_hull8.txt' "record-compare A=$folder B=$folder" 'demo CC=cc' "bench-dq QUICK=1 OUT=$folder/new"; do
     # shellcheck disable=SC2086
