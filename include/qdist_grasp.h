@@ -662,7 +662,7 @@ typedef struct {
 
 /// How many edges the pyramid of a contact with this friction has.
 ///
-/// Status: of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE (length), FRAME (length of QDIST_LAYOUT_GRASPIT);
+/// Status: of layout: ARGUMENT (kind, sides, or length negative), NONFINITE (length), FRAME (length of QDIST_LAYOUT_GRASPIT);
 /// CONTACT_FRICTION (friction).
 QDIST_API
 qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
@@ -675,7 +675,7 @@ qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
 /// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
 /// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
 ///
-/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides below 3, or length negative), NONFINITE
+/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides, or length negative), NONFINITE
 /// (length), FRAME (length of QDIST_LAYOUT_GRASPIT); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
 /// CONTACT_FRICTION, CONTACT_CAP, CONTACT_WRENCH.
 QDIST_API

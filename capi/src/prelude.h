@@ -35,7 +35,7 @@
  *             a body      as its set; ROTATION, ARGUMENT (spread, rolling_radius, extents or errors negative; rolling_radius above the set's radius;
  *                         symmetry), NONFINITE (one of these, center, rotation or translation).
  *             a unit set  NULL (value; vertex, with vertex_count), DIMENSION, ARGUMENT (extent, ball_radius or inner_radius negative; inner_radius
- *                         above extent; value is 0 along all axes), NONFINITE (one of these).
+ *                         above extent; 1 / ball_radius overflows; value is 0 along all axes), NONFINITE (one of these).
  *             options     ARGUMENT (absolute or relative negative, or both 0; use_threshold; use_guess), NONFINITE (absolute, relative, threshold,
  *                         guess).
  * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
