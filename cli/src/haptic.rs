@@ -14,15 +14,16 @@ use qdist::mesh::{Budget, DepthOptions, DepthSolver, DepthTracker, MeshDepth, Mo
 use qdist::nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3, center};
 use std::f64::consts::TAU;
 use std::fmt::Display;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
 use clap::{Args, value_parser};
 
-use crate::Trouble;
 use crate::mesh::input::Kind;
 use crate::mesh::{bodies, read};
+use crate::{Trouble, written};
 
 /// What a tick may take.
 const TICK: Duration = Duration::from_millis(1);
@@ -155,12 +156,8 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         [a, b] => (body(a.display(), read(a)?)?, body(b.display(), read(b)?)?),
         _ => (body("tool", tool())?, body("part", part())?),
     };
-    for (name, model) in [("tool", &a), ("part", &b)] {
-        if !model.mesh().report().solid {
-            println!("the {name} is no solid: its surface only is asked, there are no lower bounds");
-        }
-    }
-    println!("tool: {} triangles, part: {} triangles", a.mesh().triangles().len(), b.mesh().triangles().len());
+    let mut out = io::stdout().lock();
+    begin(&mut out, &a, &b).map_err(written)?;
     let metric = metric(&a, sigma);
     let mut times = vec![];
     let mut samples = vec![];
@@ -202,16 +199,27 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         (warm.upper, cold.upper)
     });
     let compared = compared(&pairs.collect::<Vec<_>>(), a.mesh().diagonal());
-    report(times);
-    println!("merged answers of the background: {merged}");
-    println!("{compared}");
-    match strongest {
-        (0.0, ..) => println!("no force: the tool touched nothing"),
-        (_, force, torque, tick) => {
-            println!("strongest force, tick {tick}: force {:.4?}, torque {:.4?}", force.as_slice(), torque.as_slice());
+    let (size, force, torque, tick) = strongest;
+    let force = match size > 0.0 {
+        true => {
+            format!("strongest force, tick {tick}: force {:.4?}, torque {:.4?}", force.as_slice(), torque.as_slice())
+        }
+        false => "no force: the tool touched nothing".into(),
+    };
+    let lines = format!("merged answers of the background: {merged}\n{compared}\n{force}");
+    report(&mut out, times).and_then(|()| writeln!(out, "{lines}")).map_err(written)
+}
+
+fn begin(out: &mut dyn Write, a: &Model, b: &Model) -> io::Result<()> {
+    for (name, model) in [("tool", a), ("part", b)] {
+        if !model.mesh().report().solid {
+            writeln!(out, "the {name} is no solid: its surface only is asked, there are no lower bounds")?;
         }
     }
-    Ok(())
+    let [tool, part] = [a, b].map(|model| model.mesh().triangles().len());
+    writeln!(out, "tool: {tool} triangles, part: {part} triangles")?;
+    // The loop takes seconds.
+    out.flush()
 }
 
 /// Upper bounds of warm answers beside those of cold ones, in shares of the tool's size: a depth may be next to nothing, and a ratio of two such says
@@ -239,22 +247,23 @@ fn compared(pairs: &[(f64, f64)], size: f64) -> String {
 }
 
 /// The histogram of the ticks, in milliseconds.
-fn report(mut times: Vec<f64>) {
+fn report(out: &mut dyn Write, mut times: Vec<f64>) -> io::Result<()> {
     times.sort_by(f64::total_cmp);
     let edges = [0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0, 5.0, f64::INFINITY];
     for edge in edges.windows(2) {
         let count = times.iter().filter(|&&t| edge[0] <= t && t < edge[1]).count();
         let bar = "#".repeat((60 * count).div_ceil(times.len()));
-        println!("{:>5.2} to {:>5.2} ms {count:>7} {bar}", edge[0], edge[1]);
+        writeln!(out, "{:>5.2} to {:>5.2} ms {count:>7} {bar}", edge[0], edge[1])?;
     }
-    println!(
+    writeln!(
+        out,
         "{} ticks: median {:.3} ms, p99 {:.3} ms, max {:.3} ms, missed (above 1 ms, also when the machine took the processor away) {}",
         times.len(),
         quantile(&times, 0.5),
         quantile(&times, 0.99),
         quantile(&times, 1.0),
         times.iter().filter(|&&t| t > 1.0).count()
-    );
+    )
 }
 
 #[cfg(test)]

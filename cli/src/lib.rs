@@ -12,6 +12,7 @@ pub mod mesh;
 mod text;
 
 use std::io;
+use std::path::Path;
 
 /// What is wrong, in words.
 pub type Trouble = String;
@@ -19,13 +20,31 @@ pub type Trouble = String;
 /// The reader of the output went away: that is how `| head` ends, and no trouble.
 pub const CLOSED: &str = "";
 
+const OUTPUT: &str = "standard output";
+
 /// What went wrong with the standard output.
 pub fn written(error: io::Error) -> Trouble {
-    if error.kind() == io::ErrorKind::BrokenPipe { CLOSED.into() } else { format!("standard output: {error}") }
+    if error.kind() == io::ErrorKind::BrokenPipe { CLOSED.into() } else { format!("{OUTPUT}: {error}") }
+}
+
+/// What is wrong with a file, or with what was made of it; what is wrong with the standard output is no file's.
+pub fn named(file: &Path, trouble: Trouble) -> Trouble {
+    if trouble == CLOSED || trouble.starts_with(OUTPUT) { trouble } else { format!("{}: {trouble}", file.display()) }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
+    #[test]
+    fn troubles_of_the_output_are_no_files() {
+        let file = Path::new("a.json");
+        let output = |kind: io::ErrorKind| named(file, written(kind.into()));
+        assert_eq!(output(io::ErrorKind::BrokenPipe), CLOSED);
+        assert!(output(io::ErrorKind::StorageFull).starts_with("standard output: "));
+        assert_eq!(named(file, "empty".into()), "a.json: empty");
+    }
+
     /// Numbers of JSON files are those that Rust reads, to the last bit. (Run alone, too: `cargo test -p qdist-cli`; what other packages ask of
     /// serde_json counts for all that is built with them.)
     #[test]

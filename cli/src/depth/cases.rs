@@ -214,10 +214,10 @@ mod tests {
         for (from, to, says) in [
             ("CASE", "case", "line 1: `case` where CASE is expected"),
             ("0.5", "half", "line 1: case one: `half` is no number"),
-            ("S hull 1", "S hull 2", "line 2: case one: `T` is no number"),
+            ("S hull 1", "S hull 2", "line 2: case one: `P` is no number"),
             ("S hull 1", "S hull 99999999999999999999", "line 2: case one: `99999999999999999999` is no number"),
             ("S hull 1", "S hull -1", "line 2: case one: `-1` is no number"),
-            ("S hull 1", "S torus 1", "line 2: case one: `torus` is no shape"),
+            ("S hull 1", "S torus 1", "line 1: case one: `torus` is no shape"),
             ("sphere 1", "sphere 2", "line 1: case one: sphere has 2 numbers, where it takes 1"),
             ("T -1", "T", "line 2: case one: the file ends before the reference"),
             ("T -1", "T nan", "line 2: case one: NaN is not finite, as the depth"),

@@ -291,7 +291,7 @@ fn touch(index: usize, field: &Field, normalize: bool) -> Result<Touch, Trouble>
         contact = contact.with_force_cap(cap).map_err(words)?;
     }
     let columns = |what: &str, found: usize, count: usize| match count {
-        0 => format!("the contact has no Jacobian `J` that it could belong to"),
+        0 => "the contact has no Jacobian `J` that it could belong to".into(),
         _ => format!("these are {found} {what}, `J` has {count} columns"),
     };
     let jacobian = field.get("J").maybe(|j| {
@@ -318,12 +318,12 @@ fn touch(index: usize, field: &Field, normalize: bool) -> Result<Touch, Trouble>
 
 fn reference(field: &Field) -> Result<Reference, Trouble> {
     field.only(&REFERENCE)?;
-    let set = match word(field, "set")?.as_str() {
+    let set = match word(field, "set").as_str() {
         "w" => Set::Passive,
         "wa" | "w^a" => Set::Active,
         _ => return field.get("set").must("W or Wa"),
     };
-    let norm = match word(field, "norm")?.as_str() {
+    let norm = match word(field, "norm").as_str() {
         "l1" => Norm::L1,
         "linf" | "l-infinity" => Norm::LInf,
         _ => return field.get("norm").must("L1 or Linf"),
@@ -334,8 +334,8 @@ fn reference(field: &Field) -> Result<Reference, Trouble> {
 }
 
 /// A word whose capitals do not matter; none where there is no text.
-fn word(field: &Field, key: &str) -> Result<String, Trouble> {
-    Ok(field.get(key).value.as_str().unwrap_or_default().to_lowercase())
+fn word(field: &Field, key: &str) -> String {
+    field.get(key).value.as_str().unwrap_or_default().to_lowercase()
 }
 
 fn unit(reference: &Field) -> Result<Q, Trouble> {
@@ -343,7 +343,7 @@ fn unit(reference: &Field) -> Result<Q, Trouble> {
     if !q.value.is_object() {
         return q.must("an object, {\"type\": \"ball\"} for one");
     }
-    let kind = word(&q, "type")?;
+    let kind = word(&q, "type");
     let Some((_, known)) = KINDS.iter().find(|(name, _)| *name == kind) else {
         return q.get("type").must("ball, ellipsoid, box, cross_polytope or segment");
     };
@@ -505,10 +505,10 @@ mod tests {
             ),
             (of(r#"{"type": "box", "half_widths": [0, 0, 0, 0, 0, 0]}"#), "it is no more than the origin"),
             (of(r#"{"type": "segment"}"#), "grasp 0, ref 0: `Q.wrench` is missing; it must be a list of numbers"),
-            (contact(r#""mus": 1e300"#), "grasp 0, contact 0: `mus` is 1e300: a friction coefficient is"),
-            (contact(r#""force_cap": 1e300"#), "grasp 0, contact 0: `force_cap` is 1e300: the force cap is"),
+            (contact(r#""mus": 1e300"#), "grasp 0, contact 0: `mus` is 1e+300: a friction coefficient is"),
+            (contact(r#""force_cap": 1e300"#), "grasp 0, contact 0: `force_cap` is 1e+300: the force cap is"),
             (grasp(r#""L": 1e-300"#), "grasp 0: `L` is 1e-300: "),
-            (grasp(r#""reference": [0, 1e300, 0]"#), "grasp 0: `reference` is [0,1e300,0]: "),
+            (grasp(r#""reference": [0, 1e300, 0]"#), "grasp 0: `reference` is [0,1e+300,0]: "),
             (r#"{"contacts": []}"#.into(), "grasp 0: `contacts` is []; it must be a list of one contact or more"),
             ("{}".into(), "`instances` is missing; it must be a list of grasps"),
             ("7".into(), "the file is 7; it must be a list of grasps"),
@@ -564,24 +564,24 @@ mod tests {
             reference("d").replacen(r#"{"type": "ball"}"#, &format!(r#"{{"type": "ball", "{key}": 1}}"#), 1)
         };
         let file = |key: &str| format!(r#"{{"instances": [{BARE}], "{key}": null}}"#);
-        let q: [&[&str]; 2] = [&["type", "radius", "S", "space"], &["description", "note", "notes"]];
+        let [(_, q), ..] = KINDS;
         type Text<'a> = &'a dyn Fn(&str) -> String;
-        let objects: [(&str, [&[&str]; 2], Text); 5] = [
-            ("grasp 0", GRASP, &grasp),
-            ("grasp 0, contact 0", CONTACT, &contact),
-            ("grasp 0, ref 0", REFERENCE, &reference),
-            ("grasp 0, ref 0, Q", q, &unit),
-            ("the file", FILE, &file),
+        let objects: [(&str, Known, Text); 5] = [
+            ("grasp 0: `", GRASP, &grasp),
+            ("grasp 0, contact 0: `", CONTACT, &contact),
+            ("grasp 0, ref 0: `", REFERENCE, &reference),
+            ("grasp 0, ref 0: `Q.", q, &unit),
+            ("`", FILE, &file),
         ];
         let mut told = 0;
-        for (at, [fields, notes], text) in objects {
+        for (at, Known { fields, notes }, text) in objects {
             for field in fields {
                 let unknown = |slip: &String| !fields.contains(&slip.as_str()) && !notes.contains(&slip.as_str());
                 for slip in slips(field).into_iter().filter(unknown) {
                     let says = refusal(&text(&slip));
-                    let (place, hint) = says.split_once(": is not known here; did you mean ").unwrap_or((&says, ""));
-                    assert_eq!(place, format!("{at}, {slip}"), "{says}");
-                    let offered = hint.split_once('?').unwrap_or_default().0;
+                    let (place, hint) = says.split_once("` is not known here; did you mean `").unwrap_or((&says, ""));
+                    assert_eq!(place, format!("{at}{slip}"), "{says}");
+                    let offered = hint.split_once('`').unwrap_or_default().0;
                     // Capitals do not count; an exchange of two letters is two changes, so that another name may be as near.
                     let near = |name: &str| slips(&name.to_lowercase()).contains(&slip.to_lowercase());
                     let same = offered == *field || fields.contains(&offered) && (near(offered) || field.len() < 4);

@@ -23,7 +23,7 @@ mod table1;
 pub mod unit_sets;
 mod words;
 
-use crate::{CLOSED, Trouble, flags, text, written};
+use crate::{Trouble, flags, named, text, written};
 use input::{Grasp, Reference, Set};
 use query::{Effort, Memory};
 use sets::Sets;
@@ -170,8 +170,7 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         table1::print(&mut out, &request.effort())?;
     }
     if let Some(file) = &request.file {
-        let named =
-            |trouble: Trouble| if trouble == CLOSED { trouble } else { format!("{}: {trouble}", file.display()) };
+        let named = |trouble| named(file, trouble);
         let text = text::read(file).map_err(named)?;
         let grasps = input::read(&text, request.normalize).map_err(named)?;
         if let Some(folder) = &request.plot {

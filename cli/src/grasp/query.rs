@@ -287,7 +287,7 @@ mod tests {
         let text = r#"{"contacts": [{"p": [0, 0, 1], "n": [0, 0, -1], "finger": "a", "J": [[1], [0], [0], [0]], "torque_limits": [1]},
                                     {"p": [1, 0, 1], "n": [0, 0, -1], "finger": "a", "J": [[1], [0], [0], [0]], "torque_limits": [2]}]}"#;
         let told = Sets::of_grasp(&input::read(text, false).unwrap()[0]).err().unwrap();
-        assert!(told.starts_with("grasp 0, contact 1, torque_limits: are not those"), "{told}");
+        assert!(told.starts_with("grasp 0, contact 1: `torque_limits` are not those"), "{told}");
     }
 
     /// Planar fingers in a plane that is no coordinate plane, with Jacobians known to 1e-11: W^a has three dimensions, and the value of

@@ -176,7 +176,10 @@ impl Limited {
             match all.iter().find(|finger| finger.contacts.contains(&i)) {
                 Some(finger) if finger.limits == *limits => {}
                 Some(_) => {
-                    return Err(format!("contact {i}, torque_limits: are not those of finger {} before", touch.name));
+                    return Err(format!(
+                        "contact {i}: `torque_limits` are not those that a contact of finger {} has before",
+                        touch.name
+                    ));
                 }
                 None => {
                     let contacts = (0..touches.len()).filter(|&j| touches[j].name == touch.name).collect();

@@ -19,6 +19,7 @@ pub mod table;
 mod table1;
 mod words;
 
+use crate::{Trouble, written};
 use answer::Row;
 pub use args::{Request, Source};
 use bar::Bar;
@@ -38,11 +39,11 @@ fn queries(source: &Source) -> Result<Vec<Query>, String> {
 }
 
 /// Answers on the standard output.
-pub fn run(request: &Request) -> Result<(), String> {
+pub fn run(request: &Request) -> Result<(), Trouble> {
     let source = request.source();
     let queries = queries(&source)?;
     if let Some(folder) = &request.picture {
-        std::fs::create_dir_all(folder).map_err(|e| format!("--picture: {}: {e}", folder.display()))?;
+        std::fs::create_dir_all(folder).map_err(|e| format!("--picture {}: {e}", folder.display()))?;
     }
     let bar = Bar::new(queries.len() * request.kinds().len());
     let bodies = match &source {
@@ -66,15 +67,10 @@ pub fn run(request: &Request) -> Result<(), String> {
                 eprint!("{report}");
             }
         } else {
-            // Who no longer reads has seen enough.
-            let _ = write!(io::stdout(), "{report}");
+            write!(io::stdout(), "{report}").map_err(written)?;
         }
     }
-    match answer_all(request, &source, &queries, &bodies, &bar) {
-        // Who reads has seen enough.
-        Err(e) if e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe) => Ok(()),
-        answered => answered.map_err(|e| e.to_string()),
-    }
+    answer_all(request, &source, &queries, &bodies, &bar)
 }
 
 fn answer_all(
@@ -83,14 +79,14 @@ fn answer_all(
     queries: &[Query],
     bodies: &Bodies,
     bar: &Bar,
-) -> Result<(), Box<dyn std::error::Error>> {
+) -> Result<(), Trouble> {
     let table1 = matches!(source, Source::Table1(_));
     let mut out = BufWriter::new(io::stdout().lock());
     let readable = !request.csv && !table1 && !queries.is_empty();
     if request.csv {
-        writeln!(out, "{}", answer::HEADER)?;
+        writeln!(out, "{}", answer::HEADER).map_err(written)?;
     } else if readable {
-        table::head(&mut out)?;
+        table::head(&mut out).map_err(written)?;
     }
     let options = DepthOptions { effort: request.effort(), seed: request.seed, ..DepthOptions::default() };
     let mut solvers: HashMap<_, (DepthSolver, ContactSamples)> = HashMap::new();
@@ -118,24 +114,23 @@ fn answer_all(
                 picture::draw(solver, query, &row, &options, folder)?;
             }
             if request.csv {
-                row.write(&mut out)?;
+                row.write(&mut out).map_err(written)?;
             } else if readable {
-                table::line(&mut out, &row)?;
+                table::line(&mut out, &row).map_err(written)?;
                 if matches!(source, Source::Pair(..)) {
-                    table::pose(&mut out, &row)?;
+                    table::pose(&mut out, &row).map_err(written)?;
                 }
             }
             rows.push(row);
         }
         // Who waits sees what there is.
-        bar.aside(|| out.flush())?;
+        bar.aside(|| out.flush()).map_err(written)?;
     }
     bar.finish();
     if table1 && !request.csv {
-        table1::write(&mut out, queries, bodies, &rows)?;
+        table1::write(&mut out, queries, bodies, &rows).map_err(written)?;
     } else if readable && queries.len() > 1 && !matches!(source, Source::Pair(..)) {
-        table::summary(&mut out, &rows)?;
+        table::summary(&mut out, &rows).map_err(written)?;
     }
-    out.flush()?;
-    Ok(())
+    out.flush().map_err(written)
 }

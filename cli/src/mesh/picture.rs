@@ -11,6 +11,7 @@ use plotters::prelude::*;
 use qdist::mesh::{DepthOptions, DepthSolver, Mesh, Progress};
 use qdist::nalgebra::{Isometry3, Point2, Point3, Vector3};
 
+use crate::Trouble;
 use crate::mesh::answer::Row;
 use crate::mesh::bodies;
 use crate::mesh::input::Query;
@@ -37,6 +38,19 @@ pub fn draw(
     row: &Row,
     options: &DepthOptions,
     folder: &Path,
+) -> Result<(), Trouble> {
+    let safe: String =
+        query.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    let file = folder.join(format!("{safe}_{}.svg", row.kind.name()));
+    draw_to(&file, solver, query, row, options).map_err(|error| format!("{}: {error}", file.display()))
+}
+
+fn draw_to(
+    file: &Path,
+    solver: &mut DepthSolver,
+    query: &Query,
+    row: &Row,
+    options: &DepthOptions,
 ) -> Result<(), Box<dyn Error>> {
     let mut panels = vec![(query.pose, BEFORE, "before".to_string())];
     if row.upper.is_finite() && row.upper > 0.0 {
@@ -49,11 +63,8 @@ pub fn draw(
     let still = Scene::new(a, b, &panels.iter().map(|p| p.0).collect::<Vec<_>>());
     let ends = [panels[0].0, panels[panels.len() - 1].0];
     let view = still.best_view(a, b, &ends);
-    let safe: String =
-        query.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-    let file = folder.join(format!("{safe}_{}.svg", row.kind.name()));
     let (columns, rows) = if panels.len() < 4 { (panels.len(), 1) } else { (2, 2) };
-    let root = SVGBackend::new(&file, (columns as u32 * PANEL.0, rows as u32 * PANEL.1)).into_drawing_area();
+    let root = SVGBackend::new(file, (columns as u32 * PANEL.0, rows as u32 * PANEL.1)).into_drawing_area();
     root.fill(&WHITE)?;
     for ((pose, color, words), area) in panels.iter().zip(root.split_evenly((rows, columns))) {
         let mut facets = Vec::new();

@@ -41,23 +41,24 @@ impl Lines {
 
     fn mesh(self) -> Result<Triangles, Trouble> {
         let mut mesh = Triangles::default();
-        let mut numbers: Vec<Option<u32>> = vec![None; self.vertices.len()];
+        let count = self.vertices.len();
+        let mut numbers: Vec<Option<u32>> = vec![None; count];
         for (face, line) in self.faces {
-            let Some(index) = face.iter().find(|&&index| index >= numbers.len()) else {
-                // Points and lines are no triangles.
-                let corners: Vec<usize> = if face.len() < 3 { vec![] } else { face };
-                let number = |index: &usize| {
-                    *numbers[*index].get_or_insert_with(|| {
-                        mesh.vertices.push(self.vertices[*index]);
-                        mesh.vertices.len() as u32 - 1
-                    })
-                };
-                let corners: Vec<u32> = corners.iter().map(number).collect();
-                mesh.push_polygon(&corners);
+            if let Some(index) = face.iter().find(|&&index| index >= count) {
+                return Err(format!("line {line}: vertex {} is not there: there are {count}", index.saturating_add(1)));
+            }
+            // Points and lines are no triangles.
+            if face.len() < 3 {
                 continue;
+            }
+            let number = |&index: &usize| {
+                *numbers[index].get_or_insert_with(|| {
+                    mesh.vertices.push(self.vertices[index]);
+                    mesh.vertices.len() as u32 - 1
+                })
             };
-            let count = numbers.len();
-            return Err(format!("line {line}: vertex {} is not there: there are {count}", index.saturating_add(1)));
+            let corners: Vec<u32> = face.iter().map(number).collect();
+            mesh.push_polygon(&corners);
         }
         Ok(mesh)
     }

@@ -65,7 +65,7 @@ pub fn read(mut bytes: Vec<u8>) -> Result<Triangles, Trouble> {
 /// Solid after solid.
 fn in_text(bytes: &[u8]) -> Result<Triangles, Trouble> {
     let mut joined = Joined::default();
-    let at = Cell::new(0);
+    let at = Cell::new(0usize);
     // What was read ends with the line that is wrong.
     let words = |trouble: String| format!("line {}: {trouble}", text::line(bytes, at.get().saturating_sub(1)));
     loop {
