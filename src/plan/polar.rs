@@ -32,14 +32,31 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         if N <= 3 || !query.contains_origin() || query.options.threshold.is_some() || around() {
             return Ok(false);
         }
-        self.look_for_end(query)
+        let along = (query.rays() == 1).then(|| query.ray(0));
+        let found = self.look_for_end(query, along, |query, _, _| query.is_spent())?;
+        Ok(found && query.verify()?)
     }
 
+    /// Is A, which rays have told nothing about, found to end within the margin of the origin? No surface around the origin proves anything then.
+    #[cold]
+    pub(super) fn ends_near_origin(&self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
+        if N <= 3 || !query.contains_origin() {
+            return Ok(false);
+        }
+        self.look_for_end(query, None, |query, direction, height| height <= query.margin_along(direction))
+    }
+
+    /// With a support value in a direction, and the end that it may be; in the half space of `along`.
     #[inline(never)]
-    fn look_for_end(&self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
+    fn look_for_end(
+        &self,
+        query: &mut Query<'_, T, N>,
+        along: Option<Vector<T, N>>,
+        is_end: impl Fn(&Query<'_, T, N>, &Vector<T, N>, T) -> bool,
+    ) -> Result<bool, Failure> {
         let mut hull = Simplex::vacant();
-        if query.rays() == 1 {
-            join(&mut hull, &-query.ray(0));
+        if let Some(along) = along {
+            join(&mut hull, &-along);
         }
         for vertex in self.vertices() {
             join(&mut hull, &vertex.point);
@@ -51,9 +68,10 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             if !(distance > T::of(WIDE)) || query.exhausted().is_some() {
                 return Ok(false);
             }
-            let (vertex, _) = query.support(&(nearest * (-T::one() / distance)))?;
-            if query.is_spent() {
-                return query.verify();
+            let direction = nearest * (-T::one() / distance);
+            let (vertex, height) = query.support(&direction)?;
+            if is_end(query, &direction, height) {
+                return Ok(true);
             }
             if !join(&mut hull, &vertex.point) {
                 return Ok(false);

@@ -57,10 +57,13 @@ pub(crate) fn race<T: Real, const N: usize>(
             }
         } else if rays.advance(query)? {
             query.work.allow(u64::MAX);
-            return match decided(query, &mut rays) {
-                Some(rays) => Ok(Ended::Rays(rays)),
-                None => polytope.expand(query).map(Ended::Expansion),
-            };
+            if let Some(rays) = decided(query, &mut rays) {
+                return Ok(Ended::Rays(rays));
+            }
+            if !query.is_spent() && polytope.ends_near_origin(query)? {
+                query.spend();
+            }
+            return polytope.expand(query).map(Ended::Expansion);
         }
         let [by_turns, again] = TURNS;
         turn = by_rays / OF * if expands { by_turns } else { again };
@@ -90,6 +93,9 @@ fn second<T: Real, const N: usize>(
         rays.advance(query)?;
         if let Some(rays) = decided(query, rays) {
             return Ok(Ended::Rays(rays));
+        }
+        if !query.is_spent() && polytope.ends_near_origin(query)? {
+            query.spend();
         }
         // (After a limit nothing is asked that would not be asked after a later one.)
         let end = if query.is_spent() { Some(Stop::Zero) } else { query.stopped() };

@@ -149,7 +149,12 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     fn conclude(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         let rays = core::mem::replace(&mut self.rays, Rays::new());
         let Some(witness) = rays.witness else { return Ok(true) };
-        let Some(loss) = self.cost_of_margin(query, rays.least, rays.error)? else { return Ok(true) };
+        let Some(loss) = self.cost_of_margin(query, rays.least, rays.error)? else {
+            // The upper end is found as well as asked for all the same.
+            let is_last = !(self.gap > T::zero());
+            (self.gap, self.index, self.last) = (T::zero(), 0, None);
+            return Ok(is_last);
+        };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);
         if !(lower > T::zero()) {
@@ -173,8 +178,10 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         if inner > T::zero() {
             return Ok(Some(margin(query) / inner));
         }
-        let radius = ball_inside(query, &Vector::zeros(), T::one())?;
-        self.at_edge = radius == Some(T::zero());
+        let ball = ball_inside(query, &Vector::zeros(), T::one())?;
+        // (Where A ends within the margin, each surface has a facet that may be at the origin.)
+        self.at_edge = ball.as_ref().is_some_and(|ball| ball.shortest <= query.margin());
+        let radius = ball.map(|ball| ball.radius);
         let around = |query: &Query<'_, T, N>| {
             let margin = margin(query);
             radius.filter(|&radius| radius > margin).map(|radius| least * (margin / radius))
@@ -225,7 +232,7 @@ fn balls_along<T: Real, const N: usize>(
     let (mut radius, mut index) = (T::HUGE, 0);
     while let Some(target) = next_target(query, &mut index, count)? {
         let Some(own) = ball_inside(query, &(target * distance), rest)? else { return Ok(None) };
-        radius = radius.at_most(own);
+        radius = radius.at_most(own.radius);
     }
     Ok((query.stopped().is_none()).then_some(radius))
 }
@@ -254,14 +261,22 @@ impl<T: Real, const N: usize> Rays<T, N> {
     }
 }
 
-/// Radius of a ball around `center` in A, up to the margin: the points e_i and minus their mean, scaled to their crossings,
-/// have it in their hull. 0 where A ends at the center. What the margin costs is this share `rest` of d times margin over radius.
+/// A ball around a point in A.
+struct Inside<T> {
+    /// Its radius, up to the margin.
+    radius: T,
+    /// The shortest way out of A that was met.
+    shortest: T,
+}
+
+/// A ball around `center` in A: the points e_i and minus their mean, scaled to their crossings, have it in their hull. Both lengths are 0
+/// where A ends at the center. What the margin costs is this share `rest` of d times margin over radius.
 #[inline(never)]
 fn ball_inside<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     center: &Vector<T, N>,
     rest: T,
-) -> Result<Option<T>, Failure> {
+) -> Result<Option<Inside<T>>, Failure> {
     let mut rays = Rays::new();
     let root = T::count(N).root();
     // The facet opposite e_k of the simplex { e_i, -(1 .. 1) / sqrt(N) } has the normal with 1 in all places but k.
@@ -278,11 +293,11 @@ fn ball_inside<T: Real, const N: usize>(
         });
         let (ray, shot) = shoot_from(query, center, &target, T::of(0.1), |_| enough)?;
         if matches!(shot, Shot::Left) {
-            return Ok(Some(T::zero()));
+            return Ok(Some(Inside { radius: T::zero(), shortest: T::zero() }));
         }
         if !matches!(shot, Shot::Hit) || !rays.take(&ray) {
             return Ok(None);
         }
     }
-    Ok(Some(rays.least * inradius - rays.error))
+    Ok(Some(Inside { radius: rays.least * inradius - rays.error, shortest: rays.least }))
 }
