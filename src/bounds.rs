@@ -62,8 +62,9 @@
 //!
 //! 1. The exact centroid lies inside the first simplex, and the segment from it to c is shorter than the distance of c from any
 //!    facet: c lies inside too, and the surface winds around it once.
-//! 2. A point p is inserted over facets F with n.p > e_F (by more than rounding), so conv(F, p) lies above e_F and c is
-//!    not in it: replacing F by the cone of p does not change the winding around c.
+//! 2. A point p is inserted over facets F with n.p > e_F as computed. The rounding of n.p is like that of the heights that e_F was found from, and c is beneath
+//!    F by more, so c is not in conv(F, p): replacing F by the cone of p does not change the winding around c. (That p is asked to be higher
+//!    by more than rounding spares slivers; the proof does not need it.)
 //! 3. At the end all e_F > m, so the segment from c to the origin lies beneath every facet and crosses none:
 //!    the surface winds around the origin once as well.
 //!

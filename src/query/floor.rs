@@ -22,8 +22,10 @@ impl<T: Real> Floor<T> {
 impl<T: Real, const N: usize> Query<'_, T, N> {
     /// Tells the query a lower bound of d that holds anyway, in the caller's units. (Positive ones end it earlier.)
     pub fn know(&mut self, lower: T) {
-        if lower > T::zero() && lower < T::HUGE {
-            self.raise(lower * self.scale - lower * self.scale * T::count(2) * T::ROUNDOFF, T::HUGE);
+        // The product with a power of two is exact, down to the least normal number: below that it may be rounded upwards.
+        let lower = lower * self.scale;
+        if lower >= T::TINY && lower < T::HUGE {
+            self.raise(lower, T::HUGE);
         }
     }
 

@@ -12,6 +12,7 @@ use common::lattice::{
 use nalgebra::Matrix3;
 use qdist::internal::{Axes, Bounds};
 use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
+use qdist::support::BoxShape;
 use qdist::{Answer, Options, Outcome, Plan, Real, Tracker, Vector, Workspace};
 
 fn holds<T: Real>(answer: &Answer<T, 3>, d: Dd, what: &str) {
@@ -497,6 +498,19 @@ fn a_floor_that_is_disproved() {
         let answer = memory.solver().solve_warm(&mut tracker, &set, &Ball::unit(), Some(0.0), &Options::default());
         holds(&answer, d, "disproved");
         assert_eq!(answer.outcome, Outcome::Converged);
+    }
+}
+
+/// A lower bound that is known, of a plate so thin for its size that the bound is below the normal numbers in units of the size.
+#[test]
+fn a_floor_below_the_normal_numbers() {
+    for step in 0..40 {
+        let thin = f64::from(8 + step) / 8.0 * 2f64.powi(-119);
+        let plate = BoxShape::new(Vector::from([2f32.powi(30), 2f32.powi(30), thin as f32])).unwrap();
+        let mut tracker = Tracker::<f32, 3> { lower: Some(thin as f32), ..Tracker::new() };
+        let mut memory = Workspace::<f32, 3, 64, 128>::new();
+        let answer = memory.solver().solve_warm(&mut tracker, &plate, &Ball::unit(), Some(0.0), &Options::default());
+        holds(&answer, Dd::new(thin), &format!("{step}"));
     }
 }
 

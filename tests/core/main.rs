@@ -9,6 +9,7 @@ mod brackets;
 mod cases;
 mod certificates;
 mod closed_forms;
+mod depth_margins;
 mod errors;
 mod exact_margins;
 mod far_points;

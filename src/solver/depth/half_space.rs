@@ -32,7 +32,7 @@
 //! bodies are known up to rounding: where that does not tell, the lower bound is of the case that they are opposite, and there
 //! is no upper bound.
 
-use super::{Body, Depth};
+use super::{Body, Depth, is_exact};
 use crate::bounds::{Bracket, Tolerance};
 use crate::math::{Accumulator, Vector, finite, norm};
 use crate::query::Options;
@@ -331,11 +331,6 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
 /// |R| |x|, coordinate by coordinate: what the terms of R x add up to in size.
 fn sizes<T: Real, const N: usize>(rotation: &SMatrix<T, N, N>, x: &Vector<T, N>) -> Vector<T, N> {
     rotation.abs() * x.abs()
-}
-
-/// Are all entries 0, 1 or -1?
-fn is_exact<T: Real, const N: usize>(rotation: &SMatrix<T, N, N>) -> bool {
-    rotation.iter().all(|x| x.is_zero() || x.abs() == T::one())
 }
 
 /// Are two vectors parallel, exactly?

@@ -1,0 +1,510 @@
+//! Margins of depth queries, beside those of a set's own error: what placing bodies rounds, and what routes of their own charge for being off (bodies
+//! about nearly one axis, ellipsoids with nearly the same axes, matrices that are rotations only roughly). Sets here are exact, or off by as much as they
+//! say and always to the same side. Oracles are closed forms in double-double, or what `f64` proves of bodies whose symmetries are hidden.
+//! `scripts/margins.py` takes the margins away one by one, and some test fails each time.
+
+use crate::common;
+
+use common::cases::{Placed, Shape};
+use common::dd::Dd;
+use common::dice::Dice;
+use common::lattice::{Lattice, Lean, ball, symmetric, truth};
+use nalgebra::{Matrix3, Rotation3, Unit};
+use qdist::support::{Ellipsoid, Failure, HalfSpace, Sphere, Support};
+use qdist::{Body, Depth, Options, Real, Vector, Workspace};
+
+/// So many cases, or more: MORE=100 searches for what a hundred times as many would show.
+fn cases(few: usize) -> std::ops::Range<usize> {
+    0..few * std::env::var("MORE").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
+}
+
+fn holds<T: Real>(depth: &Depth<T>, d: Dd, what: &str) {
+    let (lower, upper) = (Dd::new(depth.lower.to_f64()), Dd::new(depth.upper.to_f64()));
+    assert!(lower <= d && d <= upper, "{what}: {d:?} is not in [{lower:?}, {upper:?}] {:?}", depth.outcome);
+}
+
+fn depth<T: Real>(a: &Body<'_, T>, b: &Body<'_, T>, options: &Options<'_, T, 3>) -> Depth<T> {
+    Workspace::<T, 3, 64, 128>::new().solver().depth(a, b, options)
+}
+
+/// A matrix of numbers that the scalar type has.
+fn matrix<T: Real>(rows: [[f64; 3]; 3]) -> Matrix3<T> {
+    Matrix3::from_fn(|i, j| T::of(rows[i][j]))
+}
+
+/// R p, exactly but for 2^-104.
+fn turned<T: Real>(rotation: &Matrix3<T>, p: &[f64; 3]) -> [Dd; 3] {
+    std::array::from_fn(|i| (0..3).fold(Dd::ZERO, |sum, j| sum + Dd::product(rotation[(i, j)].to_f64(), p[j])))
+}
+
+fn length(v: &[Dd; 3]) -> Dd {
+    v.iter().fold(Dd::ZERO, |sum, &x| sum + x * x).sqrt()
+}
+
+/// One point, known exactly; measured from itself where it `stands_far`.
+struct Single {
+    at: [f64; 3],
+    stands_far: bool,
+}
+
+impl<T: Real> Support<T, 3> for Single {
+    fn support(&self, _: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        Ok(Vector::from(self.at.map(T::of)))
+    }
+    fn extent(&self) -> T {
+        T::of(self.at.iter().map(|x| x * x).sum::<f64>().sqrt() * 1.0001)
+    }
+    fn center(&self) -> Option<(Vector<T, 3>, T)> {
+        self.stands_far.then(|| (Vector::from(self.at.map(T::of)), T::zero()))
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// Two points far from their frames, in frames turned differently, come to lie next to each other: their difference is smaller than what either is rounded by.
+fn points_that_nearly_meet<T: Real>(seed: u64, size: f64) {
+    let mut dice = Dice::new(seed);
+    for case in cases(200) {
+        let p: [f64; 3] = std::array::from_fn(|_| (size * dice.signed()).round());
+        let [r, s] = [0, 1].map(|_| matrix::<T>(dice.rotation()));
+        let away = turned(&r, &p);
+        // Where B's point would have to be.
+        let q: [f64; 3] =
+            std::array::from_fn(|j| (0..3).map(|i| s[(i, j)].to_f64() * away[i].to_f64()).sum::<f64>().round());
+        let image = turned(&s, &q);
+        let left: [T; 3] = std::array::from_fn(|i| T::of((image[i] - away[i]).to_f64()));
+        let difference: [Dd; 3] = std::array::from_fn(|i| away[i] - image[i] + Dd::new(left[i].to_f64()));
+        let d = -length(&difference);
+        for stands_far in [false, true] {
+            let [a, b] = [p, q].map(|at| Single { at, stands_far });
+            let (a, b) =
+                (Body::<T>::new(&a, r, Vector::from(left)).unwrap(), Body::<T>::new(&b, s, Vector::zeros()).unwrap());
+            holds(&depth(&a, &b, &Options::default()), d, &format!("{case} {p:?} {q:?} {stands_far}"));
+            holds(&depth(&b, &a, &Options::default()), d, &format!("{case} {p:?} {q:?} {stands_far}, swapped"));
+        }
+    }
+}
+
+#[test]
+fn points_that_nearly_meet_f64() {
+    points_that_nearly_meet::<f64>(1, 1e15);
+}
+
+#[test]
+fn points_that_nearly_meet_f32() {
+    points_that_nearly_meet::<f32>(2, 9e6);
+}
+
+/// A box around the origin whose points are farther out, or less far, by what it states axis by axis.
+struct Leaner {
+    half: [f64; 3],
+    by: [f64; 3],
+}
+
+impl<T: Real> Support<T, 3> for Leaner {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let corner = |i: usize| T::of(self.half[i] + self.by[i]);
+        Ok(Vector::from_fn(|i, _| if u[i] < T::zero() { -corner(i) } else { corner(i) }))
+    }
+    fn extent(&self) -> T {
+        T::of(self.half.iter().map(|x| x * x).sum::<f64>().sqrt() * 1.0001)
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        Vector::from(self.half.map(T::of))
+    }
+    fn error(&self) -> T {
+        T::of(self.by.iter().map(|x| x * x).sum::<f64>().sqrt() * (1.0 + 1e-12))
+    }
+    fn errors(&self) -> Vector<T, 3> {
+        Vector::from(self.by.map(|x| T::of(x.abs() * (1.0 + 1e-12))))
+    }
+}
+
+/// A matrix that stretches by 4e-5 stretches errors as well.
+#[test]
+fn errors_under_a_matrix_that_stretches() {
+    let stretched = Matrix3::identity() * (1.0 + 4e-5);
+    // Half lengths, by how much they lean, and the radius of a ball in the middle: uneven errors are seen by direction.
+    for (half, by) in [([2.0, 2.0, 2.0], 0.25), ([64.0, 64.0, 2.0], 0.25)] {
+        for sign in [1.0, -1.0] {
+            for by in [[by, by, by], [8.0 * by, 8.0 * by, by]] {
+                let box_ = Leaner { half, by: by.map(|x| x * sign) };
+                let a = Body::new(&box_, stretched, Vector::zeros()).unwrap();
+                let ball = Sphere::new(1.0).unwrap();
+                let b = Body::at(&ball, Vector::zeros());
+                holds(
+                    &depth(&a, &b, &Options::default()),
+                    Dd::new(1.0 + half[2] * (1.0 + 4e-5)),
+                    &format!("{half:?} {by:?}"),
+                );
+            }
+        }
+    }
+    // Along one axis the error of all is that of the axis: a small box.
+    for sign in [1.0, -1.0] {
+        let stick = Leaner { half: [0.0625; 3], by: [0.0, 0.0, 0.25 * sign] };
+        let a = Body::new(&stick, stretched, Vector::zeros()).unwrap();
+        let ball = Sphere::new(1.0).unwrap();
+        let b = Body::at(&ball, Vector::from([0.0, 0.0, 3.0]));
+        holds(&depth(&a, &b, &Options::default()), Dd::new(0.0625 * (1.0 + 4e-5) - 2.0), "a stick");
+    }
+}
+
+/// A body that does not know its extent, with as large an error as that allows.
+fn bodies_of_unknown_extent<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    for case in cases(100) {
+        let lean = Lean::Share(dice.pick(&[-1.0, 1.0]) * 40.0 * T::ROUNDOFF.to_f64());
+        let set = Lattice { lean, loose: 0.0, ..Lattice::new(symmetric(&mut dice, [40; 3])) };
+        let point = Single { at: [0.0; 3], stands_far: false };
+        let d = truth(&set.points, ball);
+        let (a, b) = (Body::<T>::at(&set, Vector::zeros()), Body::<T>::at(&point, Vector::zeros()));
+        holds(&depth(&a, &b, &Options::default()), d, &format!("{case} {set:?}"));
+    }
+}
+
+#[test]
+fn bodies_of_unknown_extent_f64() {
+    bodies_of_unknown_extent::<f64>(3);
+}
+
+#[test]
+fn bodies_of_unknown_extent_f32() {
+    bodies_of_unknown_extent::<f32>(4);
+}
+
+/// A set of which nothing is known but its points: what it turns about is hidden.
+struct Plain<'a>(&'a (dyn Support<f64, 3> + Sync));
+
+impl Support<f64, 3> for Plain<'_> {
+    fn support(&self, u: &Vector<f64, 3>) -> Result<Vector<f64, 3>, Failure> {
+        self.0.support(u)
+    }
+    fn radius(&self) -> f64 {
+        self.0.radius()
+    }
+    fn rolling_radius(&self) -> f64 {
+        self.0.rolling_radius()
+    }
+    fn extent(&self) -> f64 {
+        self.0.extent()
+    }
+    fn error(&self) -> f64 {
+        self.0.error()
+    }
+}
+
+fn placed(kind: &str, numbers: &[f64], rotation: Matrix3<f64>, translation: [f64; 3]) -> Placed {
+    let shape = Shape { kind: kind.to_string(), numbers: numbers.to_vec() };
+    Placed { shape, rotation: std::array::from_fn(|i| rotation[(i / 3, i % 3)]), translation }
+}
+
+/// What `f64` proves of two bodies by expansion alone.
+fn proved(a: &Placed, b: &Placed) -> [f64; 2] {
+    let (pa, pb) = (a.shape.points(), b.shape.points());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    let (sa, sb) = (Plain(&*sa), Plain(&*sb));
+    let options = Options { relative: 1e-9, max_iterations: Some(400), ..Options::default() };
+    let mut memory = Box::new(Workspace::<f64, 3, 512, 1024>::new());
+    let found = memory.solver().depth(&a.body(&sa).unwrap(), &b.body(&sb).unwrap(), &options);
+    [found.lower, found.upper]
+}
+
+/// The bracket and what `f64` proves have a common point.
+fn agrees<T: Real>(a: &Placed, b: &Placed, relative: f64, what: &str) {
+    let (pa, pb) = (a.shape.points::<T>(), b.shape.points::<T>());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    let options = Options { relative: T::of(relative), ..Options::default() };
+    let found = depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
+    let (lower, upper) = (found.lower.to_f64(), found.upper.to_f64());
+    let [least, most] = proved(a, b);
+    assert!(
+        lower <= most && least <= upper,
+        "{what}: [{lower:e}, {upper:e}] {:?} for [{least:e}, {most:e}] {a:?} {b:?}",
+        found.outcome
+    );
+}
+
+fn rounded<T: Real>(x: f64) -> f64 {
+    T::of(x).to_f64()
+}
+
+/// A rotation, times a matrix that stretches by so much along the axes.
+fn rough<T: Real>(dice: &mut Dice, turn: Matrix3<f64>, by: f64) -> Matrix3<f64> {
+    let stretch = Matrix3::from_diagonal(&Vector::from_fn(|_, _| 1.0 + by * dice.pick(&[-1.0, 1.0])));
+    let matrix = if dice.chance(0.5) { turn * stretch } else { stretch * turn };
+    matrix.map(rounded::<T>)
+}
+
+fn turn(dice: &mut Dice, angle: f64) -> Matrix3<f64> {
+    let axis = Unit::new_unchecked(Vector::from(dice.direction::<3>()));
+    *Rotation3::from_axis_angle(&axis, angle).matrix()
+}
+
+/// A body of revolution of size 1.
+fn solid<T: Real>(dice: &mut Dice) -> (&'static str, [f64; 2]) {
+    (dice.pick(&["cylinder", "cone", "capsule"]), [0, 1].map(|_| rounded::<T>(dice.range(0.3, 1.0))))
+}
+
+/// Two bodies of revolution whose axes are off by what a tolerance allows, or whose matrices are.
+fn nearly_coaxial<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let u = T::ROUNDOFF.to_f64();
+    for case in cases(60) {
+        let (first, second) = (solid::<T>(&mut dice), solid::<T>(&mut dice));
+        let frame = if dice.chance(0.3) { Matrix3::identity() } else { turn(&mut dice, 2.0) };
+        let relative = dice.decade(-2.0, 0.0);
+        let aside = if case % 2 == 0 { relative * dice.decade(-3.0, -1.3) } else { 0.0 };
+        let stretch = if case % 3 == 0 { 0.0 } else { 28.0 * u };
+        let a = placed(first.0, &first.1, rough::<T>(&mut dice, frame, stretch), [0.0; 3]);
+        let lean = turn(&mut dice, aside);
+        let off = (frame.column(2) * dice.range(0.0, 0.3)).map(rounded::<T>).into();
+        let b = placed(second.0, &second.1, rough::<T>(&mut dice, lean * frame, stretch), off);
+        agrees::<T>(&a, &b, relative, &format!("{case} {relative:e}"));
+    }
+}
+
+#[test]
+fn nearly_coaxial_f64() {
+    nearly_coaxial::<f64>(5);
+}
+
+#[test]
+fn nearly_coaxial_f32() {
+    nearly_coaxial::<f32>(6);
+}
+
+/// A corner or an edge near the axis of a body of revolution: sectors.
+fn corners_near_an_axis<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let u = T::ROUNDOFF.to_f64();
+    for case in cases(60) {
+        let first = solid::<T>(&mut dice);
+        let frame = if dice.chance(0.3) { Matrix3::identity() } else { turn(&mut dice, 2.0) };
+        let stretch = if case % 3 == 0 { 0.0 } else { 28.0 * u };
+        let a = placed(first.0, &first.1, rough::<T>(&mut dice, frame, stretch), [0.0; 3]);
+        let near = dice.decade(-4.0, -0.5);
+        let b = match case % 3 {
+            0 => {
+                let corners: Vec<f64> = (0..12)
+                    .map(|i| if i < 3 { near * dice.signed() } else { 2.0 * dice.signed() })
+                    .map(rounded::<T>)
+                    .collect();
+                placed("hull", &corners, rough::<T>(&mut dice, frame, stretch), [0.0; 3])
+            }
+            1 => {
+                let second = solid::<T>(&mut dice);
+                let angle = dice.decade(-4.0, -0.3);
+                let lean = turn(&mut dice, angle);
+                let off = (Vector::from(dice.direction::<3>()) * near).map(rounded::<T>).into();
+                placed(second.0, &second.1, rough::<T>(&mut dice, lean * frame, stretch), off)
+            }
+            _ => {
+                let half: [f64; 3] = [near, near * dice.unit(), dice.range(0.3, 2.0)].map(rounded::<T>);
+                let angle = dice.decade(-4.0, -0.3);
+                let lean = turn(&mut dice, angle);
+                placed("box", &half, rough::<T>(&mut dice, lean * frame, stretch), [0.0; 3])
+            }
+        };
+        let relative = dice.decade(T::RELATIVE_TOLERANCE.to_f64().log10(), -1.0);
+        agrees::<T>(&a, &b, relative, &format!("{case} {relative:e}"));
+        agrees::<T>(&b, &a, relative, &format!("{case} {relative:e}, swapped"));
+    }
+}
+
+#[test]
+fn corners_near_an_axis_f64() {
+    corners_near_an_axis::<f64>(7);
+}
+
+#[test]
+fn corners_near_an_axis_f32() {
+    corners_near_an_axis::<f32>(8);
+}
+
+/// Ellipsoids whose centres and axes agree, but for what a tolerance allows.
+fn ellipsoids_with_nearly_common_axes<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let u = T::ROUNDOFF.to_f64();
+    for case in cases(60) {
+        let mut semi = || -> [f64; 3] { std::array::from_fn(|_| rounded::<T>(dice.range(0.3, 1.0))) };
+        let (first, second) = (semi(), semi());
+        let frame = if dice.chance(0.3) { Matrix3::identity() } else { turn(&mut dice, 2.0) };
+        let relative = dice.decade(-3.0, 0.0);
+        let aside = if case % 2 == 0 { relative * dice.decade(-3.0, -1.0) } else { 0.0 };
+        let apart = if case % 3 == 0 { relative * dice.decade(-3.0, -0.5) } else { 0.0 };
+        let stretch = if case % 5 == 0 { 0.0 } else { 14.0 * u };
+        let a = placed("ellipsoid", &first, rough::<T>(&mut dice, frame, stretch), [0.0; 3]);
+        let lean = turn(&mut dice, aside);
+        let off = (Vector::from(dice.direction::<3>()) * apart).map(rounded::<T>).into();
+        let b = placed("ellipsoid", &second, rough::<T>(&mut dice, lean * frame, stretch), off);
+        agrees::<T>(&a, &b, relative, &format!("{case} {relative:e}"));
+    }
+}
+
+#[test]
+fn ellipsoids_with_nearly_common_axes_f64() {
+    ellipsoids_with_nearly_common_axes::<f64>(9);
+}
+
+#[test]
+fn ellipsoids_with_nearly_common_axes_f32() {
+    ellipsoids_with_nearly_common_axes::<f32>(10);
+}
+
+/// The ball that rolls in an ellipsoid is none under a matrix that stretches.
+#[test]
+fn ellipsoids_under_a_matrix_that_stretches() {
+    let stretched = Matrix3::identity() * (1.0 + 4e-5);
+    for semi in [[1.0, 1.0, 1.0], [1.0, 1.0, 0.75], [1.0, 0.75, 0.625]] {
+        let a = placed("ellipsoid", &semi, stretched, [0.0; 3]);
+        let shape = a.shape.build::<f64>(&[]).unwrap();
+        let ball = Sphere::new(1.0).unwrap();
+        let found = depth(&a.body(&*shape).unwrap(), &Body::at(&ball, Vector::zeros()), &Options::default());
+        let d = 1.0 + semi.into_iter().fold(1.0, f64::min) * (1.0 + 4e-5);
+        assert!(found.lower <= d + 1e-15 && d - 1e-15 <= found.upper, "{semi:?} {found:?} {d}");
+    }
+}
+
+/// A ball of radius 1 that rolled in a rounded body, of which a point is left.
+struct Rolled;
+
+impl<T: Real> Support<T, 3> for Rolled {
+    fn support(&self, _: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        Ok(Vector::zeros())
+    }
+    fn radius(&self) -> T {
+        T::one()
+    }
+    fn rolling_radius(&self) -> T {
+        T::one()
+    }
+    fn extent(&self) -> T {
+        T::of(1e-30)
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// Such a ball stays one where the matrix is a rotation but for some roundoffs. Its image is none, and the image is meant.
+fn rolling_balls_under_a_matrix_off_by_roundoffs<T: Real>() {
+    let n = [1.0; 3];
+    let ground = HalfSpace::new(Vector::from(n.map(T::of)), T::zero()).unwrap();
+    let ground = Body::at(&ground, Vector::zeros());
+    for off in [-31.0, -28.0, -16.0, 16.0, 28.0, 31.0] {
+        let stretch = Matrix3::identity() + Matrix3::repeat(0.5 * off * T::ROUNDOFF.to_f64());
+        let rotation = stretch.map(T::of);
+        let along = |semi: [f64; 3]| {
+            let local = turned(&rotation.transpose(), &n);
+            length(&std::array::from_fn(|i| local[i] * Dd::new(semi[i]))) / Dd::new(3.0).sqrt()
+        };
+        for semi in [[1.0, 1.0, 1.0], [1.0, 1.0, 0.9375], [0.9375, 1.0, 0.96875]] {
+            let ellipsoid = Ellipsoid::new(Vector::from(semi.map(T::of))).unwrap();
+            let a = Body::new(&ellipsoid, rotation, Vector::zeros()).unwrap();
+            holds(&depth(&a, &ground, &Options::default()), along(semi), &format!("{off} {semi:?}"));
+        }
+        // Across n, the matrix leaves lengths as they are.
+        let d = along([1.0; 3]).min(Dd::new(1.0));
+        let a = Body::<T>::new(&Rolled, rotation, Vector::zeros()).unwrap();
+        let point = Single { at: [0.0; 3], stands_far: false };
+        holds(&depth(&a, &Body::<T>::at(&point, Vector::zeros()), &Options::default()), d, &format!("{off} rolled"));
+        holds(&depth(&a, &ground, &Options::default()), along([1.0; 3]), &format!("{off} rolled, on the ground"));
+    }
+}
+
+#[test]
+fn rolling_balls_under_a_matrix_off_by_roundoffs_f64() {
+    rolling_balls_under_a_matrix_off_by_roundoffs::<f64>();
+}
+
+#[test]
+fn rolling_balls_under_a_matrix_off_by_roundoffs_f32() {
+    rolling_balls_under_a_matrix_off_by_roundoffs::<f32>();
+}
+
+/// A shape of size 1 with numbers of `f32`: round, nearly round, thin, or with a small ball.
+fn shape(dice: &mut Dice, kind: &'static str) -> (&'static str, Vec<f64>) {
+    let numbers: Vec<f64> = match kind {
+        "sphere" => vec![dice.decade(-3.0, 0.0)],
+        "box" => (0..3).map(|_| dice.range(0.3, 1.0)).collect(),
+        "hull" => (0..4 + dice.below(8)).flat_map(|_| dice.direction::<3>()).collect(),
+        "capsule" => vec![dice.decade(-4.0, 0.0), dice.range(0.3, 1.0)],
+        "round" => (0..3).map(|_| 1.0 - dice.decade(-6.0, -1.0)).collect(),
+        _ => (0..if kind == "ellipsoid" { 3 } else { 2 }).map(|_| dice.range(0.3, 1.0)).collect(),
+    };
+    (if kind == "round" { "ellipsoid" } else { kind }, numbers.into_iter().map(rounded::<f32>).collect())
+}
+
+/// What `f64` proves of two bodies.
+fn proved_at_all(a: &Placed, b: &Placed, relative: f64) -> Depth<f64> {
+    let (pa, pb) = (a.shape.points(), b.shape.points());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    let options = Options { relative, max_iterations: Some(1000), ..Options::default() };
+    let mut memory = Box::new(Workspace::<f64, 3, 512, 1024>::new());
+    memory.solver().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options)
+}
+
+/// Contacts in `f32` that end in two words, asked for more and less exactly; under matrices that are off by so many roundoffs.
+fn contacts_in_two_words(seed: u64, [first, second]: [&'static str; 2], roundoffs: f64) {
+    let mut dice = Dice::new(seed);
+    for case in cases(40) {
+        let mut body = |kind, at| {
+            let (kind, numbers) = shape(&mut dice, kind);
+            let frame = turn(&mut dice, 2.0);
+            let matrix = match case % 3 {
+                0 => frame.map(rounded::<f32>),
+                1 => rough::<f32>(&mut dice, frame, roundoffs * 0.5 * f64::from(f32::ROUNDOFF)),
+                _ => {
+                    let off = roundoffs * 0.5 * f64::from(f32::ROUNDOFF) * dice.pick(&[-1.0, 1.0]);
+                    ((Matrix3::identity() + Matrix3::repeat(off)) * frame).map(rounded::<f32>)
+                }
+            };
+            placed(kind, &numbers, matrix, at)
+        };
+        let (a, mut b) = (body(first, [0.0; 3]), body(second, [0.25, 0.125, -0.0625]));
+        let near = proved_at_all(&a, &b, 1e-4);
+        let wanted = dice.decade(-4.5, -0.5);
+        let moved = Vector::from(b.translation) + near.normal * (near.upper - wanted);
+        b.translation = moved.map(rounded::<f32>).into();
+        let truth = proved_at_all(&a, &b, 1e-12);
+        let (pa, pb) = (a.shape.points::<f32>(), b.shape.points::<f32>());
+        let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+        for relative in [1e-6, 1e-5, 1e-4, 1e-3, 1e-2] {
+            let options = Options { relative, ..Options::default() };
+            let found = depth::<f32>(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
+            let (lower, upper) = (f64::from(found.lower), f64::from(found.upper));
+            let what = (found.outcome, truth.lower, truth.upper);
+            assert!(lower <= truth.upper && truth.lower <= upper, "{case} [{lower:e}, {upper:e}] {what:?} {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn polyhedra_in_two_words() {
+    contacts_in_two_words(11, ["box", "hull"], 28.0);
+    contacts_in_two_words(12, ["hull", "hull"], 28.0);
+}
+
+#[test]
+fn small_balls_in_two_words() {
+    contacts_in_two_words(13, ["capsule", "box"], 28.0);
+    contacts_in_two_words(14, ["capsule", "capsule"], 28.0);
+    contacts_in_two_words(15, ["sphere", "hull"], 28.0);
+}
+
+#[test]
+fn curved_bodies_in_two_words() {
+    contacts_in_two_words(16, ["ellipsoid", "box"], 28.0);
+    contacts_in_two_words(17, ["cylinder", "cone"], 28.0);
+    contacts_in_two_words(18, ["ellipsoid", "capsule"], 28.0);
+}
+
+#[test]
+fn nearly_round_bodies_in_two_words() {
+    contacts_in_two_words(19, ["round", "box"], 28.0);
+    contacts_in_two_words(20, ["round", "round"], 28.0);
+    contacts_in_two_words(21, ["round", "sphere"], 28.0);
+    contacts_in_two_words(22, ["round", "hull"], 1.0);
+}
