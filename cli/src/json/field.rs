@@ -24,7 +24,7 @@ pub struct Known {
 pub struct Field<'a> {
     pub value: &'a Value,
     owner: String,
-    name: String,
+    name: Option<String>,
 }
 
 /// What is quoted of a value at most, in letters.
@@ -33,13 +33,13 @@ const QUOTED: usize = 60;
 impl<'a> Field<'a> {
     /// A thing by itself; the whole file has no name.
     pub fn of(value: &'a Value, owner: impl Into<String>) -> Field<'a> {
-        Field { value, owner: owner.into(), name: String::new() }
+        Field { value, owner: owner.into(), name: None }
     }
 
     pub fn get(&self, key: &str) -> Field<'a> {
         let value = self.value.get(key).unwrap_or(&Value::Null);
-        let name = if self.name.is_empty() { key.to_string() } else { format!("{}.{key}", self.name) };
-        Field { value, owner: self.owner.clone(), name }
+        let name = self.name.as_ref().map_or(key.to_string(), |name| format!("{name}.{key}"));
+        Field { value, owner: self.owner.clone(), name: Some(name) }
     }
 
     pub fn is_missing(&self) -> bool {
@@ -48,11 +48,11 @@ impl<'a> Field<'a> {
 
     /// Owner and field, as messages begin.
     fn place(&self) -> String {
-        match (self.owner.is_empty(), self.name.is_empty()) {
-            (true, true) => "the file".into(),
-            (false, true) => self.owner.clone(),
-            (true, false) => format!("`{}`", self.name),
-            (false, false) => format!("{}: `{}`", self.owner, self.name),
+        match (self.owner.as_str(), &self.name) {
+            ("", None) => "the file".into(),
+            (owner, None) => owner.into(),
+            ("", Some(name)) => format!("`{name}`"),
+            (owner, Some(name)) => format!("{owner}: `{name}`"),
         }
     }
 
@@ -137,7 +137,8 @@ impl<'a> Field<'a> {
     /// The entries of a list; `of` says what it holds.
     pub fn entries(&self, of: &str) -> Result<Vec<Field<'a>>, Trouble> {
         let Some(list) = self.value.as_array() else { return self.must(of) };
-        let entry = |(i, value)| Field { value, owner: self.owner.clone(), name: format!("{}[{i}]", self.name) };
+        let name = self.name.as_deref().unwrap_or_default();
+        let entry = |(i, value)| Field { value, owner: self.owner.clone(), name: Some(format!("{name}[{i}]")) };
         Ok(list.iter().enumerate().map(entry).collect())
     }
 
