@@ -56,9 +56,9 @@ query: keys, error of Q | query/sets.rs | self.unit(normal)? + @self.unit_error@
 expansion: from the key to the offset | plan/expansion.rs | - @whole.abs() * (T::count(5) * T::ROUNDOFF)@ | T::zero()
 expansion: thin first simplex | plan/expansion.rs | let thin = @self.resolution_along(&direction) + margin + margin@ | T::zero()
 polytope: surface folded over | polytope/plane.rs | @self.sound = false@; | ()
-polytope: centre beneath a facet, rounding | polytope/plane.rs | height > @roundoffs * self.reach@ || self.axes.as_ref().is_some_and(|axes| | T::zero()
-polytope: centre beneath a facet by direction, rounding | polytope/plane.rs | is_some_and(|axes| height > @axes.resolution(normal)@) | T::zero()
-polytope: centre beneath a point, in two words | polytope/plane.rs | height > @roundoffs * self.reach@ || self.axes.as_ref().is_some_and(along) | T::zero()
+polytope: centre beneath a facet, rounding | polytope/plane.rs | offset, @3 * N + 8@, 1) | 0
+polytope: centre beneath a facet by direction, rounding | polytope/plane.rs | offset, 3 * N + 8, @1@) | 0
+polytope: centre beneath a point, in two words | polytope/plane.rs | height, @16 * N@, 2) | 0
 polytope: visible facets | polytope/insert.rs | height > @tolerance@ | T::zero()
 
 conewise: points off | plan/conewise.rs | query.margin() * T::count(@3@ + | 0

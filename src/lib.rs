@@ -40,8 +40,8 @@
 //! cheaper, the two take turns (`plan::race`). From tick to tick of a control loop the bracket moves along with the set ([`Tracker`]). Meshes, which are not
 //! convex, have a search of their own, and a tracker of their own (`mesh::depth`).
 //!
-//! In `f32`, a depth that is a thousandth of the bodies' size is a few roundoffs: what rounding leaves open there is measured once more with points in two words
-//! (`solver::depth::fine`).
+//! In `f32`, the default tolerance of a depth that is a thousandth of the bodies' size is two roundoffs of theirs: what rounding leaves open is measured once
+//! more with points in two words (`solver::depth::fine`).
 //!
 //! Three things keep it exact and fast:
 //!

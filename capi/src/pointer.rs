@@ -9,8 +9,6 @@
 //! Structs that may grow begin with their size ([`Versioned`], module [`layout`](super::layout)). One from an earlier header is shorter: what it lacks takes its default when it is
 //! read, and stays unwritten when it is a result.
 
-#[cfg(feature = "grasp")]
-use super::layout;
 use super::layout::{Defaults, Gaps, Versioned, known};
 use super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL};
 use core::ffi::c_void;
@@ -115,7 +113,7 @@ impl<S> In<S> {
     {
         aligned(self.0)?;
         // SAFETY: checked; a struct of any version begins with its size, which is all that is read before it is known.
-        layout::current::<S>(unsafe { self.0.cast::<u32>().read() })?;
+        super::layout::current::<S>(unsafe { self.0.cast::<u32>().read() })?;
         self.get()
     }
 

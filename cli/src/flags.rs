@@ -24,6 +24,27 @@ fn within(text: &str, fits: impl Fn(f64) -> bool) -> Option<f64> {
     text.parse().ok().filter(|x| fits(*x))
 }
 
+/// The request of a line of arguments.
+#[cfg(test)]
+pub fn parse<R: clap::Args>(arguments: &str) -> Result<R, clap::Error> {
+    #[derive(clap::Parser)]
+    struct Line<R: clap::Args> {
+        #[command(flatten)]
+        request: R,
+    }
+    let words = std::iter::once("qdist").chain(arguments.split_whitespace());
+    <Line<R> as clap::Parser>::try_parse_from(words).map(|line| line.request)
+}
+
+/// Each of these numbers is refused by the flag's name.
+#[cfg(test)]
+pub fn refuses<R: clap::Args>(arguments: &str, flag: &str, numbers: &[&str]) {
+    for number in numbers {
+        let told = parse::<R>(&format!("{arguments} --{flag} {number}")).err().unwrap().to_string();
+        assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

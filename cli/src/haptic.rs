@@ -269,23 +269,13 @@ fn report(out: &mut dyn Write, mut times: Vec<f64>) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        request: Request,
-    }
+    use crate::flags::{parse, refuses};
 
     #[test]
     fn what_may_be_asked() {
-        let parse = |line: &str| Line::try_parse_from(line.split_whitespace()).map(|line| line.request);
-        assert_eq!(parse("haptic --ticks 7").unwrap().ticks, 7);
-        for number in ["0", "-1", "nan", "1.5", "10000001", "99999999999999999999"] {
-            let told = parse(&format!("haptic --ticks {number}")).unwrap_err().to_string();
-            assert!(told.contains(&format!("'{number}' for '--ticks")), "{told}");
-        }
-        assert!(parse("haptic a.obj").is_err());
+        assert_eq!(parse::<Request>("--ticks 7").unwrap().ticks, 7);
+        refuses::<Request>("", "ticks", &["0", "-1", "nan", "1.5", "10000001", "99999999999999999999"]);
+        assert!(parse::<Request>("a.obj").is_err());
     }
 
     /// Nothing is divided by a depth that may be 0; a loop that never touches has a word for it.

@@ -1,16 +1,17 @@
 //! Open sets: a direction in which A ends at the origin.
 //!
-//! Where A contains the origin, d is 0 exactly when some direction u has h_A(u) = 0, that is, when u is in the polar cone of A. For that it only matters
-//! in which directions A's points are, not how far out. So the points known are put on the unit sphere, and the point x of their
-//! hull that is nearest to the origin gives the deepest direction of their polar cone:
+//! Where A contains the origin, and Q is not flat, d is 0 exactly when some direction u has h_A(u) = 0, that is, when u is in the polar cone of A. For that
+//! it only matters in which directions A's points are, not how far out. So the points known are put on the unit sphere, and the point x of their
+//! hull that is nearest to the origin gives the deepest direction of their polar cone (N + 1 of them at a time, those that count):
 //!
 //! ```text
-//! u = -x / |x|,     u.p <= -|x| |p|     for all p known
+//! u = -x / |x|,     u.p <= -|x| |p|     for these p
 //! ```
 //!
-//! A segment Q = [0, q] asks for more: u.q > 0, which -q as one more point gives. A is asked along u. If it ends at the origin there, that is the proof; else its point joins the others (this is GJK, on the sphere). A grasp that is
-//! open takes a few steps of some hundred instructions each, where facets in six dimensions cost a hundred times as much. Where the hull contains the
-//! origin, or nearly so, the first simplex is around the origin, nearly so: expansion is the plan.
+//! A segment Q = [0, q] asks for more: u.q > 0, which -q as one more point gives. A is asked along u. If it ends at the origin there, that is the proof;
+//! else its point joins the others (this is GJK, on the sphere). A grasp that is open takes a few such steps, where each
+//! point in six dimensions makes dozens of facets. A hull with the origin in it, or nearly so, says that A does not end there, as far as
+//! its points tell: expansion is the plan.
 
 use crate::math::{Vector, norm};
 use crate::polytope::Polytope;
@@ -22,8 +23,8 @@ use crate::support::Failure;
 /// Steps for each dimension.
 const STEPS: usize = 2;
 
-/// A cone of points this near to a half space is left to expansion.
-const WIDE: f64 = 1e-3;
+/// A hull this near to the origin has it inside, for what it is worth.
+const NEAR: f64 = 1e-3;
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// After the first simplex: is A found to end at the origin? Not asked in two and three dimensions, where a facet costs less than a step.
@@ -59,13 +60,16 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
             join(&mut hull, &-along);
         }
         for vertex in self.vertices() {
+            if hull.corners().len() > N {
+                break;
+            }
             join(&mut hull, &vertex.point);
         }
         for _ in 0..STEPS * N {
             hull.minimize(T::count(8 * N) * T::ROUNDOFF);
             let nearest = hull.point();
             let distance = norm(&nearest);
-            if !(distance > T::of(WIDE)) || query.exhausted().is_some() {
+            if !(distance > T::of(NEAR)) || query.exhausted().is_some() {
                 return Ok(false);
             }
             let direction = nearest * (-T::one() / distance);

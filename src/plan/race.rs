@@ -6,7 +6,7 @@
 //! need. Then the two take turns, rays three times as long. Both stop where they are and go on from there, and each knows the other's upper bounds.
 //!
 //! No schedule that does not know how much work the plans need keeps below twice the better one always. This one mostly does, and takes up to three
-//! times as long where expansion would have needed just more than its first share.
+//! times as long at worst.
 //!
 //! What rays need was measured on octahedra, boxes, ellipsoids and hulls of random points in two to six dimensions, with 1 to 20,000 vertices of
 //! Q: between (N + 9) / 4 steps for each and twice as many. (Where Q says nothing about some directions, N + 1 short rays more are needed.)
@@ -57,13 +57,10 @@ pub(crate) fn race<T: Real, const N: usize>(
             }
         } else if rays.advance(query)? {
             query.work.allow(u64::MAX);
-            if let Some(rays) = decided(query, &mut rays) {
-                return Ok(Ended::Rays(rays));
-            }
-            if !query.is_spent() && polytope.ends_near_origin(query)? {
-                query.spend();
-            }
-            return polytope.expand(query).map(Ended::Expansion);
+            return match told(polytope, query, &mut rays)? {
+                Some(rays) => Ok(Ended::Rays(rays)),
+                None => polytope.expand(query).map(Ended::Expansion),
+            };
         }
         let [by_turns, again] = TURNS;
         turn = by_rays / OF * if expands { by_turns } else { again };
@@ -91,11 +88,8 @@ fn second<T: Real, const N: usize>(
     query.work.allow(u64::MAX);
     if !polytope.widen(query, expanded.stop, expanded.key)? {
         rays.advance(query)?;
-        if let Some(rays) = decided(query, rays) {
+        if let Some(rays) = told(polytope, query, rays)? {
             return Ok(Ended::Rays(rays));
-        }
-        if !query.is_spent() && polytope.ends_near_origin(query)? {
-            query.spend();
         }
         // (After a limit nothing is asked that would not be asked after a later one.)
         let end = if query.is_spent() { Some(Stop::Zero) } else { query.stopped() };
@@ -104,6 +98,19 @@ fn second<T: Real, const N: usize>(
         }
     }
     Ok(Ended::Expansion(expanded))
+}
+
+/// Rays that have decided the query. After others, where A ends next to the origin, nothing is left for expansion either.
+fn told<T: Real, const N: usize>(
+    polytope: &Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    rays: &mut RaySearch<T, N>,
+) -> Result<Option<Crossings<T, N>>, Failure> {
+    let found = decided(query, rays);
+    if found.is_none() && !query.is_spent() && polytope.ends_near_origin(query)? {
+        query.spend();
+    }
+    Ok(found)
 }
 
 /// Rays that have decided the query; of others the lower bound is kept.

@@ -38,18 +38,20 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
 
     /// Is the centre certainly beneath the facet with this plane? (Module `bounds`.)
     fn is_beneath(&self, normal: &Vector<T, N>, offset: T) -> bool {
-        let height = offset - normal.dot(&self.center);
-        let roundoffs = T::count(3 * N + 8) * T::ROUNDOFF;
-        // (A resolution by direction is 8 N roundoffs; what is needed is less.)
-        height > roundoffs * self.reach || self.axes.as_ref().is_some_and(|axes| height > axes.resolution(normal))
+        self.is_beneath_by(normal, offset, 3 * N + 8, 1)
     }
 
     /// Is it certainly beneath what is at this height, and by a rounding of any height more?
     pub fn is_far_beneath(&self, normal: &Vector<T, N>, height: T) -> bool {
-        let height = height - normal.dot(&self.center);
-        let roundoffs = T::count(16 * N) * T::ROUNDOFF;
-        let along = |axes: &Axes<T, N>| height > axes.resolution(normal) * T::count(2);
-        height > roundoffs * self.reach || self.axes.as_ref().is_some_and(along)
+        self.is_beneath_by(normal, height, 16 * N, 2)
+    }
+
+    /// Is it beneath by so many roundoffs, or by so many resolutions by direction? (One is 8 N roundoffs; what is needed is less.)
+    #[inline(always)]
+    fn is_beneath_by(&self, normal: &Vector<T, N>, height: T, roundoffs: usize, resolutions: usize) -> bool {
+        let over = height - normal.dot(&self.center);
+        let along = |axes: &Axes<T, N>| over > axes.resolution(normal) * T::count(resolutions);
+        over > T::count(roundoffs) * T::ROUNDOFF * self.reach || self.axes.as_ref().is_some_and(along)
     }
 
     /// For a facet whose plane may cut the centre off: a sliver has more normals than one, up to rounding, and one that

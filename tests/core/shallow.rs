@@ -132,6 +132,16 @@ fn exact(a: &(dyn Support<f64, 3> + Sync), at: &Pose, b: &(dyn Support<f64, 3> +
     (depth.lower, depth.upper)
 }
 
+/// The last distance below `far` at which the bodies are as deep as wanted.
+fn last(mut far: f64, is_deep: impl Fn(f64) -> bool) -> f64 {
+    let mut near = 0.0;
+    for _ in 0..60 {
+        let middle = (near + far) / 2.0;
+        if is_deep(middle) { near = middle } else { far = middle }
+    }
+    near
+}
+
 /// Of contacts of polyhedra of this size, so far from the origin of the world: how many were tried, and how many have a bracket as narrow as asked for.
 /// All must be true.
 fn converged(count: usize, scale: f32, offset: f32, depths: std::ops::Range<f64>) -> (usize, usize) {
@@ -159,13 +169,8 @@ fn converged_of(
             second.both(scale, |b, wide_b| {
                 // Moved along until the depth is about what is wanted.
                 let at_distance = |t: f64| at.1 + (along * t).map(|x| x as f32);
-                let (mut near, mut far) = (0.0, 4.0 * f64::from(scale));
-                for _ in 0..60 {
-                    let middle = (near + far) / 2.0;
-                    bt.1 = at_distance(middle);
-                    if exact(wide_a, &at, wide_b, &bt).0 > wanted { near = middle } else { far = middle }
-                }
-                bt.1 = at_distance(near);
+                let is_deep = |t| exact(wide_a, &at, wide_b, &(bt.0, at_distance(t))).0 > wanted;
+                bt.1 = at_distance(last(4.0 * f64::from(scale), is_deep));
                 let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
                 if lower < f64::from(scale) * depths.start {
                     return; // Not so deep anywhere.
@@ -244,11 +249,7 @@ fn polygons_in_the_plane() {
             let body_b = Body::new(&boxes.1, turn_b.map(f64::from), at).unwrap();
             Workspace::<f64, 2, 16, 16>::new().solver().depth(&body_a, &body_b, &Options::default())
         };
-        let (mut near, mut far) = (0.0, 4.0);
-        for _ in 0..60 {
-            let middle = (near + far) / 2.0;
-            if depth(middle).lower > 2e-3 { near = middle } else { far = middle }
-        }
+        let near = last(4.0, |t| depth(t).lower > 2e-3);
         let truth = depth(near);
         let boxes = (BoxShape::new(a).unwrap(), BoxShape::new(b).unwrap());
         let body_a = Body::new(&boxes.0, turn_a, Vector2::zeros()).unwrap();
@@ -384,13 +385,8 @@ fn bodies_that_do_not_always_tell_their_points_in_two_words() {
         let (below, nan, short) = (rng.signed() as f32, number % 2 == 0, [1.0, 0.999][number / 2 % 2]);
         first.both(1.0, |a, wide_a| {
             second.both(1.0, |b, wide_b| {
-                let (mut near, mut far) = (0.0, 4.0);
-                for _ in 0..40 {
-                    let middle = (near + far) / 2.0;
-                    bt.1 = (along * middle).map(|x| x as f32);
-                    if exact(wide_a, &at, wide_b, &bt).0 > 2e-3 { near = middle } else { far = middle }
-                }
-                bt.1 = (along * near).map(|x| x as f32);
+                let at_distance = |t: f64| (along * t).map(|x| x as f32);
+                bt.1 = at_distance(last(4.0, |t| exact(wide_a, &at, wide_b, &(bt.0, at_distance(t))).0 > 2e-3));
                 let (lower, upper) = exact(wide_a, &at, wide_b, &bt);
                 let forgetful = Forgetful { whole: a, below, nan, short };
                 let (body_a, body_b) = (Body::new(&forgetful, at.0, at.1).unwrap(), Body::new(b, bt.0, bt.1).unwrap());
@@ -459,4 +455,19 @@ fn tips_of_cones_on_one_axis() {
             });
         });
     }
+}
+
+/// Long thin cylinders in one another: the plane's bracket stays, in any memory. Expansion would tile the circle, for nothing in a small one.
+#[test]
+fn a_circle_of_minimisers_is_not_tiled() {
+    let thin = [0.01, 0.013].map(|radius| Cylinder::new(radius, 1.0f32).unwrap());
+    let truth = f64::from(0.01f32) + f64::from(0.013f32);
+    let (a, b) = (Body::at(&thin[0], Vector3::zeros()), Body::at(&thin[1], Vector3::zeros()));
+    let options = Options::default();
+    let small = Workspace::<f32, 3, 64, 128>::new().solver().depth(&a, &b, &options);
+    let mut large = Box::new(Workspace::<f32, 3, 1024, 2048>::new());
+    let large = large.solver().depth(&a, &b, &options);
+    assert!(f64::from(small.lower) <= truth && truth <= f64::from(small.upper), "{small:?}");
+    assert!(small.upper - small.lower < 2e-5 && small.iterations < 8, "{small:?}");
+    assert_eq!(small, large);
 }

@@ -231,25 +231,15 @@ fn one(out: &mut dyn Write, case: &Case, found: &Found) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        request: Request,
-    }
+    use crate::flags::{parse, refuses};
 
     #[test]
     fn what_may_not_be_asked() {
-        for line in ["depth", "depth a --verbose --csv"] {
-            assert!(Line::try_parse_from(line.split_whitespace()).is_err(), "{line}");
+        for line in ["", "a --verbose --csv"] {
+            assert!(parse::<Request>(line).is_err(), "{line}");
         }
         for flag in ["relative", "absolute"] {
-            for number in ["nan", "inf", "-1", "1", "x"] {
-                let line = format!("depth a --{flag} {number}");
-                let told = Line::try_parse_from(line.split_whitespace()).err().unwrap().to_string();
-                assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
-            }
+            refuses::<Request>("a", flag, &["nan", "inf", "-1", "1", "x"]);
         }
     }
 
@@ -259,15 +249,15 @@ mod tests {
         let text =
             std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/std_box_box.txt")).unwrap();
         let mut cases = cases::parse(&text).unwrap();
-        let request = |line: &str| Line::try_parse_from(line.split_whitespace()).unwrap().request;
-        let found = solve_all::<f64>(&request("depth a.txt"), &cases).unwrap();
+        let request = |line: &str| parse::<Request>(line).unwrap();
+        let found = solve_all::<f64>(&request("a.txt"), &cases).unwrap();
         assert!(found.iter().all(|f| f.right && f.narrow && f.along));
-        assert!(solve_all::<f32>(&request("depth a.txt --f32"), &cases).unwrap().iter().all(|f| f.right));
+        assert!(solve_all::<f32>(&request("a.txt --f32"), &cases).unwrap().iter().all(|f| f.right));
         let mut lines = Vec::new();
         csv(&mut lines, &cases, &found).unwrap();
         let lines = String::from_utf8(lines).unwrap();
         assert!(lines.lines().all(|line| line.split(',').count() == HEADER.split(',').count()));
         (cases[0].lower, cases[0].upper) = (2.0 * cases[0].depth, 2.0 * cases[0].depth);
-        assert!(!solve_all::<f64>(&request("depth a.txt"), &cases).unwrap()[0].right);
+        assert!(!solve_all::<f64>(&request("a.txt"), &cases).unwrap()[0].right);
     }
 }

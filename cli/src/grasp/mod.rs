@@ -184,16 +184,10 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        request: Request,
-    }
+    use crate::flags::refuses;
 
     fn parse(line: &str) -> Result<Request, clap::Error> {
-        Line::try_parse_from(format!("grasp {line}").split_whitespace()).map(|line| line.request)
+        flags::parse(line)
     }
 
     #[test]
@@ -210,10 +204,7 @@ mod tests {
         let lines = ["", "a b", "a --what", "a --plot", "--table1 --csv"];
         lines.into_iter().for_each(|line| assert!(parse(line).is_err(), "{line}"));
         for flag in ["relative", "seconds"] {
-            for number in ["nan", "inf", "-1", "0", "1e9", "x"] {
-                let told = parse(&format!("a --{flag} {number}")).unwrap_err().to_string();
-                assert!(told.contains(&format!("'{number}' for '--{flag}")), "{told}");
-            }
+            refuses::<Request>("a", flag, &["nan", "inf", "-1", "0", "1e9", "x"]);
         }
     }
 }

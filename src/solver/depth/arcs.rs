@@ -180,7 +180,7 @@ impl<T: Real> Solver<'_, T, 3> {
     ) -> Option<Answer<T, 3>> {
         let answer = self.depth_on_axis(pair, axis, calls, options)?;
         let known = matches!(answer.outcome, Outcome::Converged | Outcome::Above | Outcome::Below);
-        (known && answer.direction.dot(&axis.along).abs() < T::of(0.99)).then_some(answer)
+        (known && !axis.has_pole(&answer.direction)).then_some(answer)
     }
 
     /// Expansion has spent its patience: the sectors, else expansion with all memory.

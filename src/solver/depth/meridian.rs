@@ -9,7 +9,7 @@
 //! ```
 //!
 //! so points of the half plane (the other half is its mirror image) give the same bracket in a few steps. (They are points in one word. Shallow contact
-//! that needs two is expanded in space after all: its minimum is at a pole, unless the tips of two cones meet.)
+//! that needs two is expanded in space after all, where its minimum is at a pole. A circle stays as it is: tips of cones, long thin bodies.)
 //!
 //! # The chain, and what it proves
 //!

@@ -451,6 +451,11 @@ impl<T: Real> Axis<T> {
     fn is_common(&self) -> bool {
         self.aside <= T::count(AXIS_ROUNDOFFS) * T::ROUNDOFF
     }
+
+    /// Is this direction the axis', or nearly so? Else the minimisers are a circle around it.
+    fn has_pole(&self, direction: &Vector<T, 3>) -> bool {
+        !(direction.dot(&self.along).abs() < T::of(0.99))
+    }
 }
 
 impl<T: Real> Pair<'_, '_, T, 3> {
@@ -554,8 +559,8 @@ impl<T: Real> Solver<'_, T, 3> {
         if let Some(axis) = axis.filter(Axis::is_common)
             && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options)
         {
-            // (What a plane of one word leaves open in shallow contact, expansion in two may close: at a pole no circle is to be tiled.)
-            return if is_shallow(&answer) {
+            // (What a plane of one word leaves open in shallow contact, expansion in two may close: at a pole, where no circle is to be tiled.)
+            return if is_shallow(&answer) && axis.has_pole(&answer.direction) {
                 self.conclude_pair(&pair, &answer, &pair.aimed(options))
             } else {
                 Depth::new(&answer, &pair)
