@@ -479,6 +479,27 @@ fn equal_ellipsoids_about_one_centre() {
     assert!(seen.lower <= 1.0 && 1.0 <= seen.upper && seen.upper - seen.lower < 1e-13, "{seen:?}");
 }
 
+/// Asked for more than single precision tells: the closed form's bracket stands, where expansion fills its memory with tiles of a pole.
+#[test]
+fn equal_ellipsoids_as_well_as_one_word_tells() {
+    let mut dice = Dice::new(10);
+    for k in 0..100 {
+        let semi = if k == 0 { [0.368347, 0.374666, 1.04961] } else { [0; 3].map(|_| dice.range(0.3, 1.2) as f32) };
+        let egg = qdist::support::Ellipsoid::new(semi.into()).unwrap();
+        let angles = [0; 3].map(|_| dice.range(0.0, 6.25));
+        let turn = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]).matrix().map(|x| x as f32);
+        let at = dice.direction::<3>().map(|x| x as f32).into();
+        let body = qdist::Body::new(&egg, turn, at).unwrap();
+        let options = Options::<f32, 3> { relative: 1e-6, ..Options::default() };
+        let found = qdist::Workspace::<f32, 3, 64, 128>::new().solver().depth(&body, &body, &options);
+        // (The matrix is a rotation to some roundoffs.)
+        let least = 2.0 * f64::from(semi.into_iter().fold(f32::MAX, f32::min));
+        let (lower, upper) = (f64::from(found.lower), f64::from(found.upper));
+        assert!(lower <= least * (1.0 + 3e-7) && least * (1.0 - 3e-7) <= upper, "{k}: {found:?}, {least}");
+        assert!(upper - lower < 1e-4 * least, "{k}: {found:?}");
+    }
+}
+
 #[test]
 fn ellipsoids_about_nearly_one_centre() {
     let mut dice = Dice::new(9);

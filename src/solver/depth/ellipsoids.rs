@@ -25,7 +25,7 @@ use crate::math::{Vector, norm, unit};
 use crate::polytope::simplex::Simplex;
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::query::answer::Answer;
+use crate::query::answer::{Answer, Stop};
 use crate::scalar::Real;
 use crate::solver::Solver;
 
@@ -67,15 +67,30 @@ impl<T: Real> Solver<'_, T, 3> {
         calls: u32,
         options: &Options<'_, T, 3>,
     ) -> Depth<T> {
-        if let Some(off) = pair.off_common_axes(options)
-            && let Some(answer) = self.ask_along_axes(pair, off, calls, options)
-        {
-            return Depth::new(&answer, pair);
+        match pair.off_common_axes(options).and_then(|off| self.ask_along_axes(pair, off, calls, options)) {
+            Some(known) if !known.outcome.is_open() => Depth::new(&known, pair),
+            Some(known) => self.expand_beside(pair, &known, options),
+            None => self.expand_pair(pair, calls, options),
         }
-        self.expand_pair(pair, calls, options)
     }
 
-    /// The closed form, if it ends the query.
+    /// Expansion, where the closed form leaves more open than was asked for; or the latter, where that is narrower.
+    #[cold]
+    fn expand_beside(
+        &mut self,
+        pair: &Pair<'_, '_, T, 3>,
+        known: &Answer<T, 3>,
+        options: &Options<'_, T, 3>,
+    ) -> Depth<T> {
+        let found = self.expand_pair(pair, known.support_calls, options);
+        if found.failure.is_some() || found.upper - found.lower <= known.upper - known.lower {
+            return found;
+        }
+        let Depth { iterations, support_calls, vertices, facets, .. } = found;
+        Depth { iterations, support_calls, vertices, facets, ..Depth::new(known, pair) }
+    }
+
+    /// The closed form.
     #[cold]
     fn ask_along_axes(
         &mut self,
@@ -97,7 +112,7 @@ impl<T: Real> Solver<'_, T, 3> {
         }
         let (vertex, height) = lowest?;
         let lower = query.lower_from_offset(height - off * query.scale(), query.margin())?;
-        let stop = query.verdict(&Bracket { lower, upper: query.upper() })?;
+        let stop = query.verdict(&Bracket { lower, upper: query.upper() }).unwrap_or(Stop::Rounding);
         Some(self.report(&mut query, stop, lower, Simplex::new(vertex)))
     }
 }
