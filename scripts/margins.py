@@ -166,7 +166,7 @@ HIDDEN = {
 }
 
 # Of the test program `core`.
-TESTS = ["exact_margins", "depth_margins", "far_points"]
+TESTS = ["exact_margins", "depth_margins", "far_points", "half_spaces"]
 SWITCH = """
 /// Is this margin taken away?
 #[cfg(feature = "std")]
