@@ -902,7 +902,7 @@ QDIST_API qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist
 typedef struct {
     /// sizeof(qdist_options_f64).
     uint32_t struct_size;
-    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
+    /// The most steps, over all plans; 0: 50,000, which take a second or two in dimension 6
     /// (`make figures`), and 64 for each vertex of a polytopal Q.
     uint32_t max_iterations;
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
@@ -943,7 +943,7 @@ typedef struct {
     double point_b[3];
     /// Affine dimension of A - B, without ball terms, as far as it was found out: 3 unless it is flat.
     uint32_t dimension;
-    /// Points added.
+    /// Steps of all plans: directions along which a point was asked for to go on with.
     uint32_t iterations;
     /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
     /// state its extent.
@@ -986,7 +986,7 @@ typedef struct {
     uint32_t point_count;
     /// Affine dimension of A's core, as far as it was found out.
     uint32_t dimension;
-    /// Points added.
+    /// Steps of all plans: directions along which a point was asked for to go on with.
     uint32_t iterations;
     /// Calls of A's support function.
     uint32_t support_calls;

@@ -27,62 +27,66 @@ const STEPS: usize = 2;
 const NEAR: f64 = 1e-3;
 
 impl<T: Real, const N: usize> Polytope<'_, T, N> {
-    /// After the first simplex: is A found to end at the origin? Not asked in two and three dimensions, where a facet costs less than a step.
+    /// After the first simplex: is A found to end at the origin?
     pub(super) fn ends_at_origin(&self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         let around = || self.nearest_facet().is_none_or(|(_, _, offset)| offset > T::zero());
-        if N <= 3 || !query.contains_origin() || query.options.threshold.is_some() || around() {
+        if !may_end(query) || query.options.threshold.is_some() || around() {
             return Ok(false);
         }
-        let along = (query.rays() == 1).then(|| query.ray(0));
-        let found = self.look_for_end(query, along, |query, _, _| query.is_spent())?;
-        Ok(found && query.verify()?)
+        let mut hull = Simplex::vacant();
+        if query.rays() == 1 {
+            join(&mut hull, &-query.ray(0));
+        }
+        for vertex in self.vertices() {
+            join(&mut hull, &vertex.point);
+        }
+        look_for_end(query, &mut hull, |query, _, _| query.is_spent())
     }
 
     /// Is A, which rays have told nothing about, found to end within the margin of the origin? No surface around the origin proves anything then.
     #[cold]
     pub(super) fn ends_near_origin(&self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
-        if N <= 3 || !query.contains_origin() {
+        let Some(nearest) = self.nearest_facet().and_then(|(index, ..)| self.facet(index)).filter(|_| may_end(query))
+        else {
+            return Ok(false);
+        };
+        let mut hull = Simplex::vacant();
+        for corner in self.corners(nearest).corners() {
+            join(&mut hull, &corner.vertex.point);
+        }
+        look_for_end(query, &mut hull, |query, direction, height| height <= query.margin_along(direction))
+    }
+}
+
+/// A that contains a ball around the origin does not end there. In two and three dimensions a facet costs less than a step.
+fn may_end<T: Real, const N: usize>(query: &Query<'_, T, N>) -> bool {
+    N > 3 && query.contains_origin() && !(query.bounds.radius > T::zero())
+}
+
+/// With a support value in a direction, and the end that it may be; the hull has the directions of points of A. Without shortcuts in the end.
+#[inline(never)]
+fn look_for_end<T: Real, const N: usize>(
+    query: &mut Query<'_, T, N>,
+    hull: &mut Simplex<T, N>,
+    is_end: impl Fn(&Query<'_, T, N>, &Vector<T, N>, T) -> bool,
+) -> Result<bool, Failure> {
+    for _ in 0..STEPS * N {
+        hull.minimize(T::count(8 * N) * T::ROUNDOFF);
+        let nearest = hull.point();
+        let distance = norm(&nearest);
+        if !(distance > T::of(NEAR)) || query.exhausted().is_some() {
             return Ok(false);
         }
-        self.look_for_end(query, None, |query, direction, height| height <= query.margin_along(direction))
+        let direction = nearest * (-T::one() / distance);
+        let (vertex, height) = query.support(&direction)?;
+        if is_end(query, &direction, height) {
+            return query.verify();
+        }
+        if !join(hull, &vertex.point) {
+            return Ok(false);
+        }
     }
-
-    /// With a support value in a direction, and the end that it may be; in the half space of `along`.
-    #[inline(never)]
-    fn look_for_end(
-        &self,
-        query: &mut Query<'_, T, N>,
-        along: Option<Vector<T, N>>,
-        is_end: impl Fn(&Query<'_, T, N>, &Vector<T, N>, T) -> bool,
-    ) -> Result<bool, Failure> {
-        let mut hull = Simplex::vacant();
-        if let Some(along) = along {
-            join(&mut hull, &-along);
-        }
-        for vertex in self.vertices() {
-            if hull.corners().len() > N {
-                break;
-            }
-            join(&mut hull, &vertex.point);
-        }
-        for _ in 0..STEPS * N {
-            hull.minimize(T::count(8 * N) * T::ROUNDOFF);
-            let nearest = hull.point();
-            let distance = norm(&nearest);
-            if !(distance > T::of(NEAR)) || query.exhausted().is_some() {
-                return Ok(false);
-            }
-            let direction = nearest * (-T::one() / distance);
-            let (vertex, height) = query.support(&direction)?;
-            if is_end(query, &direction, height) {
-                return Ok(true);
-            }
-            if !join(&mut hull, &vertex.point) {
-                return Ok(false);
-            }
-        }
-        Ok(false)
-    }
+    Ok(false)
 }
 
 /// Adds the direction of a point; false when the point is the origin or the hull has enough.

@@ -100,17 +100,21 @@ fn second<T: Real, const N: usize>(
     Ok(Ended::Expansion(expanded))
 }
 
-/// Rays that have decided the query. After others, where A ends next to the origin, nothing is left for expansion either.
+/// Rays that have decided the query. Where A ends next to the origin and the upper end is found, nothing is left for expansion either: others have
+/// decided it then, too.
 fn told<T: Real, const N: usize>(
     polytope: &Polytope<'_, T, N>,
     query: &mut Query<'_, T, N>,
     rays: &mut RaySearch<T, N>,
 ) -> Result<Option<Crossings<T, N>>, Failure> {
-    let found = decided(query, rays);
-    if found.is_none() && !query.is_spent() && polytope.ends_near_origin(query)? {
+    if let Some(found) = decided(query, rays) {
+        return Ok(Some(found));
+    }
+    let ends = rays.upper_is_found && !query.is_spent() && polytope.ends_near_origin(query)?;
+    if ends {
         query.spend();
     }
-    Ok(found)
+    Ok(if ends { decided(query, rays) } else { None })
 }
 
 /// Rays that have decided the query; of others the lower bound is kept.

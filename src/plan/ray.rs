@@ -130,13 +130,17 @@ impl<T: Real, const N: usize> Ray<T, N> {
             (leaving, pivot) = (Some((idle, T::zero())), share.abs());
         }
         let Some((out, step)) = leaving else { return false };
-        if pivot < largest * T::ROUNDOFF.root() {
+        let wears = pivot < largest * T::ROUNDOFF.root();
+        if wears && self.phase != Phase::Reaching {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
         }
         self.basis.exchange(out, vertex, &shares);
         for i in 0..N {
             let left = (self.weights[i] - shares[i] * step).at_least(T::zero());
             self.weights[i] = if i == out { step } else { left };
+        }
+        if wears {
+            self.polish(); // While the ray is reaching it has nothing to show: a small pivot is better than none.
         }
         self.arrive(T::count(64 * N) * T::ROUNDOFF);
         true

@@ -64,6 +64,8 @@ pub(crate) struct RaySearch<T, const N: usize> {
     again: bool,
     /// The origin is on the boundary of A, up to rounding.
     at_edge: bool,
+    /// Have all rays been shot as far as the tolerance asks? Then the upper end is found, whatever the lower one loses.
+    pub upper_is_found: bool,
     /// What the passes before have shown; nothing when they cannot decide, as the origin is not certainly inside A.
     pub found: Option<Crossings<T, N>>,
 }
@@ -80,6 +82,7 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
             reserve: T::zero(),
             again: false,
             at_edge: false,
+            upper_is_found: false,
             found: None,
         }
     }
@@ -97,10 +100,25 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         if !(query.size() > T::zero()) {
             return Ok(true); // A is the origin, as far as it was asked: no size for the first corners.
         }
+        let ends = self.shoot_passes(query)?;
+        // A limit that was met while the cost of the margin was looked for is one, too.
+        if let Some(found) = self.found.as_mut().filter(|found| found.stop == Stop::Rounding) {
+            found.stop = query.stopped().unwrap_or(Stop::Rounding);
+        }
+        Ok(ends)
+    }
+
+    /// Pass after pass.
+    fn shoot_passes(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         loop {
             match self.shoot_all(query) {
                 Ok(Shot::Hit) => {}
                 Ok(Shot::Stopped(Stop::Turn)) => return Ok(false),
+                // What a shortcut showed is no end of A: from now on there are none.
+                Ok(Shot::Left) if !query.verify()? => {
+                    (self.rays, self.index, self.last) = (Rays::new(), 0, None);
+                    continue;
+                }
                 // What an earlier pass has shown still holds.
                 Ok(shot) => {
                     if matches!(shot, Shot::Left) {
@@ -117,7 +135,7 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
                 }
             }
             if self.conclude(query)? {
-                if self.at_edge {
+                if self.at_edge && query.stopped().is_none() {
                     query.spend(); // No surface around the origin proves more.
                 }
                 return Ok(true);
@@ -148,12 +166,12 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     /// What this pass has shown: is that the end?
     fn conclude(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         let rays = core::mem::replace(&mut self.rays, Rays::new());
+        self.upper_is_found |= !(self.gap > T::zero());
         let Some(witness) = rays.witness else { return Ok(true) };
         let Some(loss) = self.cost_of_margin(query, rays.least, rays.error)? else {
             // The upper end is found as well as asked for all the same.
-            let is_last = !(self.gap > T::zero());
             (self.gap, self.index, self.last) = (T::zero(), 0, None);
-            return Ok(is_last);
+            return Ok(self.upper_is_found);
         };
         let lower = rays.least - loss;
         let lower = lower - lower.abs() * (T::count(8) * T::ROUNDOFF);

@@ -126,7 +126,7 @@ pub struct Answer<T, const N: usize> {
     pub witness: Simplex<T, N>,
     /// Affine dimension of the core of A, as far as it was found out: N unless `Degenerate` (or a flat core with a radius).
     pub dimension: usize,
-    /// Points added, in expansion and distance iteration.
+    /// Steps of all plans: directions along which A was asked for one point more to go on with.
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,

@@ -24,7 +24,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         }
         // The shortcut was wrong: what it said is forgotten.
         (self.best.height, self.best.ratio, self.best.apart) = (T::HUGE, T::HUGE, false);
-        self.rivals.met = None;
+        (self.rivals.met, self.spent) = (None, false);
         self.note(&direction, height, &point, T::zero())?;
         Ok(false)
     }

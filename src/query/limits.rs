@@ -6,7 +6,7 @@ use crate::scalar::Real;
 
 /// What was done, and what may be.
 pub(super) struct Limits {
-    /// Points added.
+    /// Steps of all plans.
     pub iterations: u32,
     /// The most of them.
     pub most: u32,
@@ -23,7 +23,7 @@ impl Limits {
 }
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
-    /// Points added so far.
+    /// Steps so far.
     pub fn iterations(&self) -> u32 {
         self.limits.iterations
     }

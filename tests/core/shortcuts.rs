@@ -11,7 +11,7 @@ use common::dice::Dice;
 use common::hull::{ExactHull, signed_depth};
 use common::memory::Memory;
 use nalgebra::{Matrix3, Vector3};
-use qdist::qset::{Ball, UnitBox, UnitSet};
+use qdist::qset::{Ball, Segment, UnitBox, UnitSet};
 use qdist::support::{BoxShape, Difference, Failure, Margin, Rigid, Scaled, Sum, Support};
 use qdist::{Body, NOT_FINITE, Options, Outcome, Real, Tracker, Vector};
 
@@ -404,5 +404,43 @@ fn calls_in_subspaces_are_counted() {
             &Options::default(),
         );
         assert_eq!(r.support_calls, calls.get(), "{half:?}");
+    }
+}
+
+/// Rays that a shortcut cuts off at the origin have shown nothing: the query was given up, [0, 100] for d = 2.2.
+#[test]
+fn a_shortcut_that_ends_at_the_origin() {
+    struct Cut<'a>(&'a BoxShape<f64, 4>);
+    impl Support<f64, 4> for Cut<'_> {
+        fn support(&self, u: &Vector<f64, 4>) -> Result<Vector<f64, 4>, Failure> {
+            let p = self.0.support(u)?;
+            Ok(Vector::from([p[0].min(0.0), p[1], p[2], p[3]]))
+        }
+        fn exhaustive(&self, u: &Vector<f64, 4>) -> Result<(Vector<f64, 4>, Vector<f64, 4>), Failure> {
+            let p = self.0.support(u)?;
+            Ok((p, p))
+        }
+        fn has_shortcuts(&self) -> bool {
+            true
+        }
+        fn extent(&self) -> f64 {
+            self.0.extent()
+        }
+        fn contains_origin(&self) -> bool {
+            true
+        }
+    }
+    let half = [1.0, 1.1, 1.2, 1.3];
+    let whole = BoxShape::new(Vector::from(half)).unwrap();
+    let mut dice = Dice::new(61);
+    for case in 0..100 {
+        let end = if case == 0 { [0.01, 0.5, 0.3, 0.1] } else { [0; 4].map(|_| dice.range(0.0, 1.0)) };
+        let d = half.iter().zip(end).map(|(h, x)| h / x).fold(f64::MAX, f64::min);
+        let q = Segment::new(Vector::from(end)).unwrap();
+        for mut memory in [Memory::new::<f64, 4>(64, 1024), Memory::least::<f64, 4>()] {
+            let answer = memory.solver::<f64, 4>().solve(&Cut(&whole), &q, &Options::default());
+            assert!(answer.lower <= d * (1.0 + 1e-15) && d <= answer.upper * (1.0 + 1e-15), "{case} {d}: {answer:?}");
+            assert_eq!(answer.outcome, Outcome::Converged, "{case} {d}: {answer:?}");
+        }
     }
 }

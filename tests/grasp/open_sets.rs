@@ -12,7 +12,7 @@ use qdist::grasp::{
 };
 use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Failure, Points, Support};
-use qdist::{Options, Outcome, Vector};
+use qdist::{Answer, Options, Outcome, Real, Vector};
 use std::cell::Cell;
 
 /// Contacts that all press to one side of a plane through the reference point: an open grasp.
@@ -288,52 +288,121 @@ fn the_deadline_is_asked_between_vertices_that_are_the_origin() {
 /// good as asked for, in any memory. (Cone by cone it went on for 50,000 points around an origin that is on the boundary.)
 #[test]
 fn a_segment_whose_lower_end_one_word_does_not_tell() {
-    let contact = |p: [f32; 3], n: [f32; 3], mu: f32, mus: f32| {
-        let frame = WrenchFrame::new(Vector::zeros(), 1.0).unwrap();
-        let contact = Contact::new(Vector::from(p), Vector::from(n), Friction::Soft { mu, mus }).unwrap();
-        Primitive::passive(&contact, &frame).unwrap()
-    };
     let named = [
-        contact(
-            [-0.045_778_31, 0.436_059_65, -0.828_758_54],
-            [0.975_249, 0.199_921_15, 0.094_450_83],
-            0.871_334,
-            0.119_028_956,
-        ),
-        contact(
-            [0.593_330_6, 0.632_736_86, 0.028_138_986],
-            [0.967_059_7, -0.236_582_01, 0.093_938_716],
-            0.313_708_16,
-            0.150_534_96,
-        ),
+        Touch {
+            p: [-0.045_778_31, 0.436_059_65, -0.828_758_54],
+            n: [0.975_249, 0.199_921_15, 0.094_450_83],
+            mu: 0.871_334,
+            mus: 0.119_028_956,
+        },
+        Touch {
+            p: [0.593_330_6, 0.632_736_86, 0.028_138_986],
+            n: [0.967_059_7, -0.236_582_01, 0.093_938_716],
+            mu: 0.313_708_16,
+            mus: 0.150_534_96,
+        },
     ];
     let end = Vector::from([0.466_561_56, 0.138_285_73, -0.015_837_226, 0.143_333_78, -0.325_014_92, -0.253_310_4]);
-    let solve = |w: &WrenchSet<'_, f32>, end: Vector<f32, 6>| {
-        let q = Segment::new(end).unwrap();
-        let mut memory = Memory::new::<f32, 6>(64, 2048);
-        let answer = memory.solver::<f32, 6>().solve(w, &q, &Options::default());
-        assert!(answer.lower >= 0.0 && answer.lower <= answer.upper && answer.iterations < 5000, "{answer:?}");
-        answer
-    };
-    let answer = solve(&WrenchSet::new(&named, Norm::L1), end);
+    let primitives = named.map(|touch| touch.primitive::<f32>());
+    let answer = segment(&WrenchSet::new(&primitives, Norm::L1), end, &Options::default());
     assert!(answer.lower <= 2.021_08 && answer.upper >= 2.020_21 && answer.upper <= 2.022, "{answer:?}");
-    let mut dice = Dice::new(29);
+    let mut told = 0;
     for case in 0..100 {
-        let mut random = |scale: f64| dice.direction::<3>().map(|x| (x * scale) as f32);
-        let contacts: Vec<_> = (0..2 + case % 4)
-            .map(|_| {
-                let (p, lean) = (random(1.0), random(0.5));
-                let n = Vector::from([1.0 + lean[0], lean[1], lean[2]]);
-                contact(p, (n / n.norm()).into(), 0.3, 0.1)
-            })
-            .collect();
+        let touches = to_one_side(&mut Dice::new(case), 2 + case as usize % 4);
+        let primitives: Vec<_> = touches.iter().map(Touch::primitive::<f32>).collect();
+        let wide: Vec<_> = touches.iter().map(Touch::primitive::<f64>).collect();
         for norm in [Norm::L1, Norm::LInf] {
-            let w = WrenchSet::new(&contacts, norm);
-            let mut mean = Vector::<f32, 6>::zeros();
-            for _ in 0..12 {
-                mean += w.support(&Vector::from(dice.direction::<6>().map(|x| x as f32))).unwrap() / 24.0;
+            let w = WrenchSet::new(&primitives, norm);
+            let end = halfway(&w, &mut Dice::new(1000 + case));
+            let answer = segment(&w, end, &Options::default());
+            // The size of forces that exert the wrench is 1 / d.
+            let mut shares = vec![Vector::zeros(); wide.len()];
+            let opposite = -end.map(f64::from);
+            let forces = ForceSolver::new()
+                .resist(&WrenchSet::new(&wide, norm), &opposite, &ForceOptions::default(), &mut shares)
+                .unwrap();
+            if forces.outcome == ForceOutcome::Converged {
+                let (least, most) = (1.0 / forces.upper, 1.0 / forces.lower);
+                told += 1;
+                assert!(f64::from(answer.lower) <= most * (1.0 + 1e-5), "{case} {norm:?} {most} {answer:?}");
+                assert!(f64::from(answer.upper) >= least * (1.0 - 1e-5), "{case} {norm:?} {least} {answer:?}");
+                assert!(f64::from(answer.upper) <= most * (1.0 + 1e-3), "{case} {norm:?} {most} {answer:?}");
             }
-            solve(&w, mean);
         }
     }
+    assert!(told >= 150, "{told}");
+}
+
+/// A soft contact of numbers that both formats have.
+struct Touch {
+    p: [f32; 3],
+    n: [f32; 3],
+    mu: f32,
+    mus: f32,
+}
+
+impl Touch {
+    fn primitive<T: Real>(&self) -> Primitive<T> {
+        let wide = |x: [f32; 3]| Vector::from(x.map(|x| T::of(x.into())));
+        let friction = Friction::Soft { mu: T::of(self.mu.into()), mus: T::of(self.mus.into()) };
+        let n = wide(self.n);
+        let contact = Contact::new(wide(self.p), n / n.norm(), friction).unwrap();
+        Primitive::passive(&contact, &WrenchFrame::new(Vector::zeros(), T::one()).unwrap()).unwrap()
+    }
+}
+
+/// Contacts that all press towards x.
+fn to_one_side(dice: &mut Dice, count: usize) -> Vec<Touch> {
+    let mut random = |scale: f64| dice.direction::<3>().map(|x| (x * scale) as f32);
+    (0..count)
+        .map(|_| {
+            let (p, lean) = (random(1.0), random(0.5));
+            Touch { p, n: [1.0 + lean[0], lean[1], lean[2]], mu: 0.3, mus: 0.1 }
+        })
+        .collect()
+}
+
+/// Halfway to a mean of random points of W.
+fn halfway(w: &WrenchSet<'_, f32>, dice: &mut Dice) -> Vector<f32, 6> {
+    (0..12).map(|_| w.support(&Vector::from(dice.direction::<6>().map(|x| x as f32))).unwrap() / 24.0).sum()
+}
+
+/// How much of a segment is in W.
+fn segment(w: &WrenchSet<'_, f32>, end: Vector<f32, 6>, options: &Options<'_, f32, 6>) -> Answer<f32, 6> {
+    let q = Segment::new(end).unwrap();
+    let answer = Memory::new::<f32, 6>(64, 2048).solver::<f32, 6>().solve(w, &q, options);
+    assert!(answer.lower >= 0.0 && answer.lower <= answer.upper && answer.iterations < 5000, "{answer:?}");
+    answer
+}
+
+/// Outcome `precision` says that more steps tell no more. A limit that was met while rays measured what rounding costs was told so, too.
+#[test]
+fn a_limit_is_told_as_one() {
+    let mut cut = 0;
+    for case in 0..12 {
+        let touches = to_one_side(&mut Dice::new(case), 2 + case as usize % 4);
+        let primitives: Vec<_> = touches.iter().map(Touch::primitive::<f32>).collect();
+        let w = WrenchSet::new(&primitives, Norm::L1);
+        let end = halfway(&w, &mut Dice::new(1000 + case));
+        let whole = segment(&w, end, &Options { max_iterations: Some(40_000), ..Options::default() });
+        for limit in 1..whole.iterations {
+            let answer = segment(&w, end, &Options { max_iterations: Some(limit), ..Options::default() });
+            let asked = Cell::new(0);
+            let expire = || {
+                asked.set(asked.get() + 1);
+                asked.get() > limit
+            };
+            let late = segment(&w, end, &Options { interrupt: Some(&expire), ..Options::default() });
+            for answer in [answer, late] {
+                cut += u32::from(matches!(answer.outcome, Outcome::Iterations | Outcome::Interrupted));
+                let same = answer.lower == whole.lower && answer.upper <= whole.upper * (1.0 + 1e-5);
+                assert!(
+                    answer.outcome != Outcome::Precision || same,
+                    "{case} {limit}: {:?}",
+                    [&answer, &whole].map(|a| (a.lower, a.upper, a.outcome, a.iterations, a.plan))
+                );
+            }
+        }
+    }
+    assert!(cut > 100, "{cut}");
 }

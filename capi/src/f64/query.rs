@@ -40,7 +40,7 @@ use qdist::Real;
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most points to add, over all plans; 0: 50,000, which take a second or two in dimension 6
+    /// The most steps, over all plans; 0: 50,000, which take a second or two in dimension 6
     /// (`make figures`), and 64 for each vertex of a polytopal Q.
     pub max_iterations: u32,
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
@@ -86,7 +86,7 @@ pub struct qdist_depth_f64 {
     pub point_b: [f64; 3],
     /// Affine dimension of A - B, without ball terms, as far as it was found out: 3 unless it is flat.
     pub dimension: u32,
-    /// Points added.
+    /// Steps of all plans: directions along which a point was asked for to go on with.
     pub iterations: u32,
     /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
     /// state its extent.
@@ -134,7 +134,7 @@ pub struct qdist_result_f64 {
     pub point_count: u32,
     /// Affine dimension of A's core, as far as it was found out.
     pub dimension: u32,
-    /// Points added.
+    /// Steps of all plans: directions along which a point was asked for to go on with.
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,
