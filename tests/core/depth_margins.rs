@@ -323,6 +323,30 @@ fn corners_near_an_axis_f32() {
     corners_near_an_axis::<f32>(8);
 }
 
+/// A tip that turns around a capsule's end: half a sector ends at a sharper edge than the sector.
+#[test]
+fn halves_of_a_sector() {
+    let cone = placed(
+        "cone",
+        &[0.8337772792667575, 0.49278996880630854],
+        Matrix3::from_row_slice(&[
+            0.9989003227337949,
+            -0.045580678771977565,
+            0.010979388189346184,
+            0.045564292419295896,
+            0.9989598961522842,
+            0.001738141461487024,
+            -0.011047194153061213,
+            -0.0012359620127920302,
+            0.9999382140408745,
+        ]),
+        [-8.443644088826562e-5, 0.00010072437636747442, -3.9603543537104404e-5],
+    );
+    let stretched = Matrix3::from_diagonal(&Vector::from([0.9999999999999969, 1.000000000000003, 0.9999999999999969]));
+    let capsule = placed("capsule", &[0.3579782209602553, 0.8146932551192714], stretched, [0.0; 3]);
+    agrees::<f64>(&cone, &capsule, 1.820501376486907e-4, "");
+}
+
 /// Ellipsoids whose centres and axes agree, but for what a tolerance allows.
 fn ellipsoids_with_nearly_common_axes<T: Real>(seed: u64) {
     let mut dice = Dice::new(seed);
@@ -446,6 +470,20 @@ fn proved_at_all(a: &Placed, b: &Placed, relative: f64) -> Depth<f64> {
     memory.solver().depth(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options)
 }
 
+/// In `f32`, asked for more and less exactly.
+fn agrees_in_two_words(a: &Placed, b: &Placed, what: &str) {
+    let truth = proved_at_all(a, b, 1e-12);
+    let (pa, pb) = (a.shape.points::<f32>(), b.shape.points::<f32>());
+    let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
+    for relative in [1e-6, 1e-5, 1e-4, 1e-3, 1e-2] {
+        let options = Options { relative, ..Options::default() };
+        let found = depth::<f32>(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
+        let (lower, upper) = (f64::from(found.lower), f64::from(found.upper));
+        let seen = (found.outcome, truth.lower, truth.upper);
+        assert!(lower <= truth.upper && truth.lower <= upper, "{what} [{lower:e}, {upper:e}] {seen:?} {a:?} {b:?}");
+    }
+}
+
 /// Contacts in `f32` that end in two words, asked for more and less exactly; under matrices that are off by so many roundoffs.
 fn contacts_in_two_words(seed: u64, [first, second]: [&'static str; 2], roundoffs: f64) {
     let mut dice = Dice::new(seed);
@@ -468,17 +506,46 @@ fn contacts_in_two_words(seed: u64, [first, second]: [&'static str; 2], roundoff
         let wanted = dice.decade(-4.5, -0.5);
         let moved = Vector::from(b.translation) + near.normal * (near.upper - wanted);
         b.translation = moved.map(rounded::<f32>).into();
-        let truth = proved_at_all(&a, &b, 1e-12);
-        let (pa, pb) = (a.shape.points::<f32>(), b.shape.points::<f32>());
-        let (sa, sb) = (a.shape.build(&pa).unwrap(), b.shape.build(&pb).unwrap());
-        for relative in [1e-6, 1e-5, 1e-4, 1e-3, 1e-2] {
-            let options = Options { relative, ..Options::default() };
-            let found = depth::<f32>(&a.body(&*sa).unwrap(), &b.body(&*sb).unwrap(), &options);
-            let (lower, upper) = (f64::from(found.lower), f64::from(found.upper));
-            let what = (found.outcome, truth.lower, truth.upper);
-            assert!(lower <= truth.upper && truth.lower <= upper, "{case} [{lower:e}, {upper:e}] {what:?} {a:?} {b:?}");
-        }
+        agrees_in_two_words(&a, &b, &format!("{case}"));
     }
+}
+
+/// A long facet whose nearest point is a little aside of where it was computed.
+#[test]
+fn a_nearest_point_aside() {
+    let ellipsoid = placed(
+        "ellipsoid",
+        &[0.3963099718093872, 0.5765498280525208, 0.6147245764732361],
+        Matrix3::from_row_slice(&[
+            0.9717864990234375,
+            0.029607435688376427,
+            -0.23399654030799866,
+            0.22572998702526093,
+            -0.4044032692909241,
+            0.8862866163253784,
+            -0.06838829070329666,
+            -0.9141014218330383,
+            -0.3996769189834595,
+        ]),
+        [0.0; 3],
+    );
+    let capsule = placed(
+        "capsule",
+        &[0.00011491403711261228, 0.7787713408470154],
+        Matrix3::from_row_slice(&[
+            -0.29182249307632446,
+            -0.6966344118118286,
+            0.655393123626709,
+            -0.04663874953985214,
+            0.6947678923606873,
+            0.7177203297615051,
+            -0.9553347229957581,
+            0.1788802146911621,
+            -0.23523904383182526,
+        ]),
+        [0.5341081023216248, -0.1297389715909958, -0.04817324876785278],
+    );
+    agrees_in_two_words(&ellipsoid, &capsule, "");
 }
 
 #[test]
