@@ -112,7 +112,7 @@ pair: ball that is an image, rounding of what is measured | solver/depth/mod.rs 
 meridian: axes aside | solver/depth/mod.rs | let moved = @axis.aside@ + | T::zero()
 meridian: matrices that stretch | solver/depth/mod.rs | axis.aside + @axis.stretched + axis.stretched@ + | T::zero()
 meridian: rounding of what is measured | solver/depth/mod.rs | axis.stretched + @T::count(4) * T::ROUNDOFF@; | T::zero()
-sectors: matrices that stretch | solver/depth/arcs.rs | pair.charge((@off@ + | T::zero()
+sectors: matrices that stretch | solver/depth/arcs.rs | (@off@ + T::count(32) | T::zero()
 sectors: rounding of points | solver/depth/arcs.rs | (off + @T::count(32) * T::ROUNDOFF@) | T::zero()
 sectors: halves of a sector | solver/depth/sectors.rs | across.at_least(@m / self.cosine@) | m
 sectors: disc, scale | solver/depth/sectors.rs | (T::one() - @slack@) | T::zero()

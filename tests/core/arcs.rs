@@ -142,6 +142,28 @@ fn a_corner_on_the_axis_of_a_cylinder() {
     assert!(r.outcome == Outcome::Converged && r.vertices <= 64, "{r:?}");
 }
 
+/// In single precision the sectors' rounding takes the default tolerance. (The memory was full of tiles then, and the bracket 5e-4 wide.)
+#[test]
+fn a_corner_on_the_axis_in_single_precision() {
+    let mut dice = Dice::new(18);
+    let mut memory = Memory::new::<f32, 3>(64, 128);
+    for case in 0..200 {
+        let mut number = |least, most| f64::from(dice.range(least, most) as f32);
+        let (r, h) = if case == 0 { (f64::from(0.1f32), 0.2) } else { (number(0.05, 0.25), number(0.1, 0.5)) };
+        let sides = [0; 3].map(|_| if case == 0 { 1.0 } else { number(0.7, 1.7) });
+        let corners: Vec<f64> =
+            (0..12).map(|i| if i >= 3 && i % 3 == i / 3 - 1 { sides[i % 3] } else { 0.0 }).collect();
+        let (corner, cylinder) = (at("hull", &corners), at("cylinder", &[r, h]));
+        for (a, b) in [(&corner, &cylinder), (&cylinder, &corner)] {
+            let seen = depth::<f32>(a, b, &mut memory, &Options::default());
+            let (lower, upper) = (f64::from(seen.lower), f64::from(seen.upper));
+            assert!(lower <= r.min(h) && r.min(h) <= upper && upper - lower < 3e-5, "{case} {r} {h}: {seen:?}");
+            let known = if case == 0 { Outcome::Converged } else { Outcome::Precision };
+            assert!(seen.outcome == Outcome::Converged || seen.outcome == known, "{case} {r} {h}: {seen:?}");
+        }
+    }
+}
+
 #[test]
 fn cylinders_whose_axes_nearly_agree() {
     let mut dice = Dice::new(2);

@@ -11,6 +11,7 @@
 use core::fmt;
 
 use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
+use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
 use crate::qset::Ball;
 use crate::query::Options;
@@ -121,6 +122,12 @@ impl<T: Real> Pair<'_, '_, T, 3> {
         Some(Spin { axis, turns: true, first, offset: self.offset, other })
     }
 
+    /// See above.
+    fn rounding_of_sectors(&self) -> T {
+        let off = (skew(&self.a.rotation) + skew(&self.b.rotation)) * T::count(4);
+        (off + T::count(32) * T::ROUNDOFF) * self.extent
+    }
+
     /// The other body's edge that `direction` touches, as the axis to search around, where it runs along the axis of `spin`, nearly. (Any unit
     /// vector would do for the proof.) Its ends are what two directions find that are leant along the axis; and if that is no such edge, from a step to either
     /// side: the direction may be the normal of a face.
@@ -200,7 +207,40 @@ impl<T: Real> Solver<'_, T, 3> {
         let (mut query, checked) = Pair::query(pair, &ball, calls, &options);
         query.resume(before);
         let answer = self.expand_only((query, checked));
+        if answer.outcome == Outcome::Capacity
+            && let Some(better) = self.search_arcs_roughly(pair, &mut calls, &options, &answer)
+        {
+            return Depth::new(&better, pair);
+        }
         self.conclude_pair(pair, &answer, &options)
+    }
+
+    /// The sectors once more, with a tolerance that rounding can meet, where they tell more than expansion did.
+    fn search_arcs_roughly(
+        &mut self,
+        pair: &mut Pair<'_, '_, T, 3>,
+        calls: &mut u32,
+        options: &Options<'_, T, 3>,
+        known: &Answer<T, 3>,
+    ) -> Option<Answer<T, 3>> {
+        let error = pair.error + pair.rounding_of_sectors();
+        let rough = Options { absolute: options.absolute.at_least(error * T::count(16)), ..*options };
+        let mut found = self.search_arcs(pair, calls, &rough, known).filter(|found| found.lower > known.lower)?;
+        (found.vertices, found.facets) = (found.vertices.max(known.vertices), found.facets.max(known.facets));
+        if found.outcome == Outcome::Converged {
+            found.outcome = Outcome::Precision;
+        }
+        // That the sectors' points are off says nothing of a height: it is asked for once more without that charge.
+        let ball = Ball::unit();
+        let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
+        query.resume(&found);
+        let asked = checked.and_then(|()| query.normalize()).and_then(|()| query.support(&found.direction));
+        let mut bracket = Bracket { lower: found.lower, upper: found.upper }.scaled(query.scale());
+        if asked.is_ok() && query.best.direction == found.direction {
+            bracket.upper = bracket.upper.at_most(query.upper());
+        }
+        query.refine(&mut found, &bracket, None);
+        Some(found)
     }
 
     /// The search around each axis, then around edges, after an answer that did not suffice. Adds to the support calls.
@@ -217,8 +257,7 @@ impl<T: Real> Solver<'_, T, 3> {
                 let Some(around) = pair.edge(&spin, &known.direction, calls) else { continue };
                 spin = around;
             }
-            let off = (skew(&pair.a.rotation) + skew(&pair.b.rotation)) * T::count(4);
-            let uncharged = pair.charge((off + T::count(32) * T::ROUNDOFF) * pair.extent);
+            let uncharged = pair.charge(pair.rounding_of_sectors());
             let ball = Ball::unit();
             let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
             query.resume(known);
