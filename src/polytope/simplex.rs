@@ -77,7 +77,8 @@ impl<T: Real, const N: usize> Edges<T, N> {
             rest = self.cleared(&rest);
             squared = rest.dot(&rest);
         }
-        if !(squared > resolution * resolution) {
+        // (A square without an inverse is none.)
+        if !(squared > resolution * resolution && squared >= T::TINY) {
             return false;
         }
         let (Some(q), Some(inverse)) = (self.q.get_mut(column), self.inverse.get_mut(column)) else { return false };

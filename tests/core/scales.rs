@@ -10,7 +10,7 @@ use crate::common;
 use common::dd::Dd;
 use common::dice::Dice;
 use nalgebra::{Matrix3, Vector3};
-use qdist::support::{BoxShape, Capsule, Cylinder, Ellipsoid, Points, ShapeError, Sphere, Support};
+use qdist::support::{BoxShape, Capsule, Cylinder, Ellipsoid, Failure, Points, ShapeError, Sphere, Support};
 use qdist::{Body, Depth, Options, Outcome, Real, TOO_LARGE, Vector, Workspace};
 
 type Shape<'a, T> = Box<dyn Support<T, 3> + Sync + 'a>;
@@ -174,4 +174,43 @@ fn hulls_far_from_their_frame<T: Real>(seed: u64, farthest: f64, near: f64) {
 fn witnesses_are_as_accurate_as_the_bracket() {
     hulls_far_from_their_frame::<f64>(11, 9.0, 1e-12);
     hulls_far_from_their_frame::<f32>(12, 6.0, 1e-4);
+}
+
+/// A cube that states its reach along the axes as it is, and in all as far too much: the least length that C states.
+struct Loose<T: Real>(BoxShape<T, 3>);
+
+impl<T: Real> Support<T, 3> for Loose<T> {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        assert!(u.iter().all(|x| x.finite()) && u.iter().any(|&x| x != T::zero()), "asked along {u:?}");
+        self.0.support(u)
+    }
+    fn extent(&self) -> T {
+        T::SAFE_SQUARE
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        self.0.extents()
+    }
+}
+
+/// Edges whose squares have no inverse made normals of zeros, and with them an upper end of 0 for cubes of 1e-44.
+fn cubes_below_the_normal_numbers<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let least = T::TINY * T::ROUNDOFF * T::count(2);
+    for case in 0..200 {
+        let half = least * T::count(if case < 64 { 1 + case } else { 1 + dice.below(1 << 20) });
+        let at = half * T::count(dice.below(4)) / T::count(2);
+        let cube = Loose(BoxShape::new(Vector::from([half; 3])).unwrap());
+        let d = depth(&Body::at(&cube, Vector::zeros()), &Body::at(&cube, Vector::from([at, T::zero(), T::zero()])));
+        let truth = Dd::new(2.0 * half.to_f64()) - Dd::new(at.to_f64());
+        holds(&d, truth, &format!("{case}: {half:?} {at:?}"));
+    }
+}
+
+#[test]
+fn cubes_below_the_normal_numbers_that_state_more() {
+    cubes_below_the_normal_numbers::<f32>(44);
+    cubes_below_the_normal_numbers::<f64>(45);
 }
