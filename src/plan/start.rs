@@ -77,7 +77,8 @@ impl<T: Real, const N: usize> Start<T, N> {
             }
             return unit(&towards);
         }
-        let mut best = Vector::zeros();
+        // (Nothing is longer where the square of an edge has no inverse: what is so short is flat.)
+        let mut best = self.first;
         let mut longest = T::zero();
         for i in 0..N {
             let mut axis = Vector::<T, N>::zeros();

@@ -77,8 +77,7 @@ impl<T: Real, const N: usize> Edges<T, N> {
             rest = self.cleared(&rest);
             squared = rest.dot(&rest);
         }
-        // (A square without an inverse is none.)
-        if !(squared > resolution * resolution && squared >= T::TINY) {
+        if !(squared > resolution * resolution) {
             return false;
         }
         let (Some(q), Some(inverse)) = (self.q.get_mut(column), self.inverse.get_mut(column)) else { return false };
