@@ -57,9 +57,13 @@ pub(crate) fn race<T: Real, const N: usize>(
             }
         } else if rays.advance(query)? {
             query.work.allow(u64::MAX);
-            return match told(polytope, query, &mut rays)? {
-                Some(rays) => Ok(Ended::Rays(rays)),
-                None => polytope.expand(query).map(Ended::Expansion),
+            if let Some(rays) = told(polytope, query, &mut rays)? {
+                return Ok(Ended::Rays(rays));
+            }
+            let expanded = polytope.expand(query)?;
+            return match expanded.stop {
+                Stop::Rounding | Stop::Capacity => last(polytope, query, expanded, &mut rays),
+                _ => Ok(Ended::Expansion(expanded)),
             };
         }
         let [by_turns, again] = TURNS;
@@ -86,18 +90,34 @@ fn second<T: Real, const N: usize>(
     rays: &mut RaySearch<T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     query.work.allow(u64::MAX);
-    if !polytope.widen(query, expanded.stop, expanded.key)? {
+    if polytope.widen(query, expanded.stop, expanded.key)? {
+        return Ok(Ended::Expansion(expanded));
+    }
+    rays.advance(query)?;
+    match told(polytope, query, rays)? {
+        Some(rays) => Ok(Ended::Rays(rays)),
+        None => last(polytope, query, expanded, rays),
+    }
+}
+
+/// Neither plan has an answer. Where rays were given up on their way, they are shot once more, with patience.
+fn last<T: Real, const N: usize>(
+    polytope: &mut Polytope<'_, T, N>,
+    query: &mut Query<'_, T, N>,
+    expanded: Expanded<T>,
+    rays: &mut RaySearch<T, N>,
+) -> Result<Ended<T, N>, Failure> {
+    if !rays.upper_is_found && !query.is_spent() && query.stopped().is_none() {
+        query.is_patient = true;
+        rays.restart();
         rays.advance(query)?;
         if let Some(rays) = told(polytope, query, rays)? {
             return Ok(Ended::Rays(rays));
         }
-        // (After a limit nothing is asked that would not be asked after a later one.)
-        let end = if query.is_spent() { Some(Stop::Zero) } else { query.stopped() };
-        if let Some(stop) = end {
-            return Ok(Ended::Expansion(Expanded { stop, ..expanded }));
-        }
     }
-    Ok(Ended::Expansion(expanded))
+    // (After a limit nothing is asked that would not be asked after a later one.)
+    let end = if query.is_spent() && query.verify()? { Some(Stop::Zero) } else { query.stopped() };
+    Ok(Ended::Expansion(Expanded { stop: end.unwrap_or(expanded.stop), ..expanded }))
 }
 
 /// Rays that have decided the query. Where A ends next to the origin and the upper end is found, nothing is left for expansion either: others have

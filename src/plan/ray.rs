@@ -103,8 +103,9 @@ impl<T: Real, const N: usize> Ray<T, N> {
         self.basis.plane(&Vector::from(self.basis.artificial.map(|a| if cost(a) { T::one() } else { T::zero() })))
     }
 
-    /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none.
-    pub fn enter(&mut self, vertex: &Vertex<T, N>) -> bool {
+    /// Puts a point beyond the plane in the place of the corner that the ray demands; false when rounding leaves none. With `patience` a ray that is
+    /// reaching, which has nothing to show yet, takes a small pivot rather than none.
+    pub fn enter(&mut self, vertex: &Vertex<T, N>, patience: bool) -> bool {
         let shares = self.basis.coordinates(&vertex.point);
         // The first weight to vanish decides (Harris' ratio test: of those that vanish together, up to rounding, the one with
         // the largest pivot).
@@ -131,7 +132,7 @@ impl<T: Real, const N: usize> Ray<T, N> {
         }
         let Some((out, step)) = leaving else { return false };
         let wears = pivot < largest * T::ROUNDOFF.root();
-        if wears && self.phase != Phase::Reaching {
+        if wears && !(patience && self.is_reaching()) {
             return false; // The new corner is one of the old ones, as far as arithmetic can tell.
         }
         self.basis.exchange(out, vertex, &shares);
@@ -140,7 +141,7 @@ impl<T: Real, const N: usize> Ray<T, N> {
             self.weights[i] = if i == out { step } else { left };
         }
         if wears {
-            self.polish(); // While the ray is reaching it has nothing to show: a small pivot is better than none.
+            self.polish();
         }
         self.arrive(T::count(64 * N) * T::ROUNDOFF);
         true

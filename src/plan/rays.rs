@@ -111,12 +111,12 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     /// Pass after pass.
     fn shoot_passes(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         loop {
-            match self.shoot_all(query) {
+            match self.shoot_all(query).and_then(|shot| self.verify(query, shot)) {
                 Ok(Shot::Hit) => {}
                 Ok(Shot::Stopped(Stop::Turn)) => return Ok(false),
                 // What a shortcut showed is no end of A: from now on there are none.
-                Ok(Shot::Left) if !query.verify()? => {
-                    (self.rays, self.index, self.last) = (Rays::new(), 0, None);
+                Ok(Shot::Again) => {
+                    self.restart();
                     continue;
                 }
                 // What an earlier pass has shown still holds.
@@ -141,6 +141,17 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
                 return Ok(true);
             }
         }
+    }
+
+    /// This pass anew.
+    pub fn restart(&mut self) {
+        (self.rays, self.index, self.last, self.upper_is_found) = (Rays::new(), 0, None, false);
+    }
+
+    /// Does A end where a ray says so, without its shortcuts?
+    fn verify(&self, query: &mut Query<'_, T, N>, shot: Shot) -> Result<Shot, Failure> {
+        let ends = matches!(shot, Shot::Left | Shot::Stopped(Stop::Zero));
+        Ok(if ends && !query.verify()? { Shot::Again } else { shot })
     }
 
     /// The rays of this pass, each until it cannot be the one that counts.

@@ -22,6 +22,8 @@ pub(crate) enum Shot {
     /// The ray leaves A where it begins, up to rounding.
     Left,
     Stopped(Stop),
+    /// It stopped at what is not there: once more.
+    Again,
 }
 
 /// A ray from the origin along `target`, shot until the crossing is beyond `level`, or known to a share `accuracy` of its distance; from the simplex that
@@ -126,7 +128,7 @@ fn follow<T: Real, const N: usize>(
             return Ok(Shot::Stopped(stop));
         }
         let seen = Vertex { point: vertex.point - ray.from, ..vertex };
-        if !ray.enter(&seen) {
+        if !ray.enter(&seen, query.is_patient) {
             break;
         }
         polished = false;

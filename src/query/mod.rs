@@ -62,6 +62,8 @@ pub(crate) struct Query<'q, T, const N: usize> {
     skipped: T,
     /// Nothing but the lower end at 0 is left to be found out.
     spent: bool,
+    /// The last resort: rays go on with pivots that wear their inverse out.
+    pub is_patient: bool,
     /// A was taken for flat, for its margins, and is not.
     pub is_thin: bool,
     /// Ask the support function without its shortcuts.
@@ -115,6 +117,7 @@ impl<'q, T: Real, const N: usize> Query<'q, T, N> {
             rivals: Rivals::none(),
             skipped: T::HUGE,
             spent: false,
+            is_patient: false,
             is_thin: false,
             exhaustive: false,
             limits: Limits::new(&options, vertices),

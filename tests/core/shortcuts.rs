@@ -434,8 +434,9 @@ fn a_shortcut_that_ends_at_the_origin() {
     let whole = BoxShape::new(Vector::from(half)).unwrap();
     let mut dice = Dice::new(61);
     for case in 0..100 {
-        let end = if case == 0 { [0.01, 0.5, 0.3, 0.1] } else { [0; 4].map(|_| dice.range(0.0, 1.0)) };
-        let d = half.iter().zip(end).map(|(h, x)| h / x).fold(f64::MAX, f64::min);
+        let least = if case % 2 == 0 { 0.0 } else { -1.0 };
+        let end = if case == 0 { [0.01, 0.5, 0.3, 0.1] } else { [0; 4].map(|_| dice.range(least, 1.0)) };
+        let d = half.iter().zip(end).map(|(h, x)| h / x.abs()).fold(f64::MAX, f64::min);
         let q = Segment::new(Vector::from(end)).unwrap();
         for mut memory in [Memory::new::<f64, 4>(64, 1024), Memory::least::<f64, 4>()] {
             let answer = memory.solver::<f64, 4>().solve(&Cut(&whole), &q, &Options::default());

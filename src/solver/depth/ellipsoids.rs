@@ -25,7 +25,7 @@ use crate::math::{Vector, norm, unit};
 use crate::polytope::simplex::Simplex;
 use crate::qset::Ball;
 use crate::query::Options;
-use crate::query::answer::{Answer, Stop};
+use crate::query::answer::{Answer, Outcome, Stop};
 use crate::scalar::Real;
 use crate::solver::Solver;
 
@@ -83,11 +83,15 @@ impl<T: Real> Solver<'_, T, 3> {
         options: &Options<'_, T, 3>,
     ) -> Depth<T> {
         let found = self.expand_pair(pair, known.support_calls, options);
-        if found.failure.is_some() || found.upper - found.lower <= known.upper - known.lower {
+        let done =
+            matches!(found.outcome, Outcome::Converged | Outcome::Above | Outcome::Below | Outcome::SupportFailed);
+        if done || found.upper - found.lower <= known.upper - known.lower {
             return found;
         }
+        let cut = matches!(found.outcome, Outcome::Iterations | Outcome::Interrupted);
+        let outcome = if cut { found.outcome } else { known.outcome };
         let Depth { iterations, support_calls, vertices, facets, .. } = found;
-        Depth { iterations, support_calls, vertices, facets, ..Depth::new(known, pair) }
+        Depth { outcome, iterations, support_calls, vertices, facets, ..Depth::new(known, pair) }
     }
 
     /// The closed form.
