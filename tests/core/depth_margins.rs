@@ -10,7 +10,7 @@ use common::dd::Dd;
 use common::dice::Dice;
 use common::lattice::{Lattice, Lean, ball, symmetric, truth};
 use nalgebra::{Matrix3, Rotation3, Unit};
-use qdist::support::{Ellipsoid, Failure, HalfSpace, Sphere, Support};
+use qdist::support::{Ellipsoid, Failure, HalfSpace, Sphere, Support, Symmetry, Turning};
 use qdist::{Body, Depth, Options, Real, Vector, Workspace};
 
 /// So many cases, or more: MORE=100 searches for what a hundred times as many would show.
@@ -94,6 +94,61 @@ fn points_that_nearly_meet_f64() {
 #[test]
 fn points_that_nearly_meet_f32() {
     points_that_nearly_meet::<f32>(2, 9e6);
+}
+
+/// One point far up, known exactly along z only.
+struct Stick(f32);
+
+impl Support<f32, 3> for Stick {
+    fn support(&self, _: &Vector<f32, 3>) -> Result<Vector<f32, 3>, Failure> {
+        Ok(Vector::from([0.0, 0.0, self.0]))
+    }
+    fn extent(&self) -> f32 {
+        1.8e7
+    }
+    fn extents(&self) -> Vector<f32, 3> {
+        Vector::from([0.0, 0.0, 1.8e7])
+    }
+    fn center(&self) -> Option<(Vector<f32, 3>, f32)> {
+        Some((Vector::from([0.0, 0.0, self.0]), 0.0))
+    }
+    fn error(&self) -> f32 {
+        1500.0
+    }
+    fn errors(&self) -> Vector<f32, 3> {
+        Vector::from([1000.0, 1000.0, 0.0])
+    }
+}
+
+/// Two points that nearly meet, seen along the one direction in which they are known: a roundoff of a roundoff of the terms that cancel is more than a
+/// roundoff of what they leave.
+#[test]
+fn points_that_nearly_meet_along_an_axis() {
+    let pairs = [
+        [(716357.0, 11), (-8455269.0, 8)],
+        [(-5709891.0, 7), (8875313.0, 4)],
+        [(-8314849.0, 1), (8395571.0, 8)],
+        [(-8327949.0, 13), (8514576.0, 6)],
+        [(5445427.0, 1), (-8881218.0, 6)],
+    ];
+    for pair in pairs {
+        // Matrices that shrink by so many roundoffs.
+        let [(a, r, p), (b, s, q)] = pair.map(|(at, roundoffs): (f32, u8)| {
+            let shrink = 1.0 - f32::from(roundoffs) * f32::ROUNDOFF;
+            (
+                Stick(at),
+                Matrix3::from_diagonal(&Vector::from([1.0, 1.0, shrink])),
+                Dd::product(at.into(), shrink.into()),
+            )
+        });
+        let on_a = -(p.to_f64() as f32);
+        let rest = p - q + Dd::new(on_a.into());
+        let on_b = rest.to_f64() as f32;
+        let d = -(rest - Dd::new(on_b.into())).abs();
+        let a = Body::<f32>::new(&a, r, Vector::from([0.0, 0.0, on_a])).unwrap();
+        let b = Body::<f32>::new(&b, s, Vector::from([0.0, 0.0, on_b])).unwrap();
+        holds(&depth(&a, &b, &Options::default()), d, &format!("{pair:?}"));
+    }
 }
 
 /// A box around the origin whose points are farther out, or less far, by what it states axis by axis.
@@ -275,6 +330,88 @@ fn nearly_coaxial_f32() {
     nearly_coaxial::<f32>(6);
 }
 
+/// A body of revolution with this profile, whose points are known to a few roundoffs: where its circles are off shows.
+struct Turned {
+    profile: Vec<[f64; 2]>,
+}
+
+impl<T: Real> Support<T, 3> for Turned {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let across = (u[0] * u[0] + u[1] * u[1]).root();
+        let height = |p: &[f64; 2]| Dd::product(across.to_f64(), p[0]) + Dd::product(u[2].to_f64(), p[1]);
+        let far = self.profile.iter().reduce(|a, b| if height(b) > height(a) { b } else { a }).unwrap();
+        let [r, h] = far.map(T::of);
+        let (x, y) = if across > T::zero() { (u[0] / across, u[1] / across) } else { (T::one(), T::zero()) };
+        Ok(Vector::from([r * x, r * y, h]))
+    }
+    fn extent(&self) -> T {
+        T::of(self.profile.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max) * 1.0001)
+    }
+    fn error(&self) -> T {
+        T::count(6) * T::ROUNDOFF // radii are at most 1
+    }
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Axis
+    }
+    fn turning(&self) -> Option<Turning<T>> {
+        Some(Turning::new())
+    }
+}
+
+/// Matrices that make ellipses of circles, of bodies about one axis: the plane that is asked is where they are widest.
+fn circles_that_are_ellipses<T: Real>() {
+    let half = [[1.0, 0.4375], [0.75, 0.8125], [0.25, 1.0625]];
+    let shape = Turned { profile: half.iter().flat_map(|&[r, h]| [[r, h], [r, -h]]).collect() };
+    for off in [30.0, 31.0, 32.0, -30.0, -32.0] {
+        let [x, y] = [off, -off].map(|off| T::of(1.0 + off * T::ROUNDOFF.to_f64()));
+        let rotation = Matrix3::from_diagonal(&Vector::from([x, y, T::one()]));
+        let body = Body::<T>::new(&shape, rotation, Vector::zeros()).unwrap();
+        let d = Dd::new(2.0 * x.to_f64().min(y.to_f64()));
+        for relative in [0.0, 1e-6, 1e-4, 1e-2] {
+            let options = Options { relative: T::of(relative), ..Options::default() };
+            holds(&depth(&body, &body, &options), d, &format!("{off} {relative}"));
+        }
+    }
+}
+
+#[test]
+fn circles_that_are_ellipses_f64() {
+    circles_that_are_ellipses::<f64>();
+}
+
+#[test]
+fn circles_that_are_ellipses_f32() {
+    circles_that_are_ellipses::<f32>();
+}
+
+/// A point off the axis of a cylinder: within the sector of the nearest azimuth it is nearer than at both ends.
+fn a_point_off_the_axis<T: Real>(seed: u64) {
+    let mut dice = Dice::new(seed);
+    let cylinder = Turned { profile: vec![[1.0, 2.0], [1.0, -2.0]] };
+    let a = Body::<T>::at(&cylinder, Vector::zeros());
+    for case in cases(100) {
+        let near = dice.decade(-4.0, -0.3);
+        let at = dice.direction::<3>().map(|x| rounded::<T>(x * near));
+        let point = Single { at, stands_far: false };
+        let d = Dd::new(1.0) - length(&[Dd::new(at[0]), Dd::new(at[1]), Dd::ZERO]);
+        for relative in [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12] {
+            let options = Options { relative: T::of(relative), ..Options::default() };
+            let b = Body::<T>::at(&point, Vector::zeros());
+            holds(&depth(&a, &b, &options), d, &format!("{case} {at:?} {relative:e}"));
+        }
+    }
+}
+
+#[test]
+fn a_point_off_the_axis_f64() {
+    a_point_off_the_axis::<f64>(51);
+}
+
+#[test]
+fn a_point_off_the_axis_f32() {
+    a_point_off_the_axis::<f32>(52);
+}
+
 /// A corner or an edge near the axis of a body of revolution: sectors.
 fn corners_near_an_axis<T: Real>(seed: u64) {
     let mut dice = Dice::new(seed);
@@ -446,6 +583,54 @@ fn rolling_balls_under_a_matrix_off_by_roundoffs_f64() {
 #[test]
 fn rolling_balls_under_a_matrix_off_by_roundoffs_f32() {
     rolling_balls_under_a_matrix_off_by_roundoffs::<f32>();
+}
+
+/// Long, flat, and rounded by a ball that rolled in it.
+struct RolledFloor;
+
+impl<T: Real> Support<T, 3> for RolledFloor {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let along = |x: T| T::of(if x < T::zero() { -1024.0 } else { 1024.0 });
+        Ok(Vector::from([along(u[0]), along(u[1]), T::zero()]))
+    }
+    fn radius(&self) -> T {
+        T::one()
+    }
+    fn rolling_radius(&self) -> T {
+        T::one()
+    }
+    fn extent(&self) -> T {
+        T::of(1449.0)
+    }
+    fn extents(&self) -> Vector<T, 3> {
+        Vector::from([1024.0, 1024.0, 0.0].map(T::of))
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+/// Where margins by direction count, the image of the ball does.
+fn a_floor_under_a_matrix_off_by_roundoffs<T: Real>() {
+    for off in [-15.0, -14.0, -12.0, 12.0, 14.0] {
+        let high = T::of(1.0 + off * T::ROUNDOFF.to_f64());
+        let rotation = Matrix3::from_diagonal(&Vector::from([T::one(), T::one(), high]));
+        let a = Body::<T>::new(&RolledFloor, rotation, Vector::zeros()).unwrap();
+        let b = Single { at: [0.0; 3], stands_far: false };
+        let options = Options { relative: T::zero(), ..Options::default() };
+        let found = depth(&a, &Body::<T>::at(&b, Vector::zeros()), &options);
+        holds(&found, Dd::new(high.to_f64()), &format!("{off}"));
+    }
+}
+
+#[test]
+fn a_floor_under_a_matrix_off_by_roundoffs_f64() {
+    a_floor_under_a_matrix_off_by_roundoffs::<f64>();
+}
+
+#[test]
+fn a_floor_under_a_matrix_off_by_roundoffs_f32() {
+    a_floor_under_a_matrix_off_by_roundoffs::<f32>();
 }
 
 /// A shape of size 1 with numbers of `f32`: round, nearly round, thin, or with a small ball.

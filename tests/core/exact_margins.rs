@@ -164,6 +164,56 @@ fn a_ray_through_an_edge() {
     ask_all::<f32>(&set, &Units::new([4, 8, 3], 0.0625), 0, &mut Plans::default());
 }
 
+/// Thin sets whose rays' crossings are off by more than the heights' own rounding.
+fn crossings_off<T: Real>(corners: &[Point], units: [Point; 2], unit: f64) {
+    let set = Lattice::new(corners.iter().flat_map(|&p| [p, p.map(|x| -x)]).collect());
+    for half in units {
+        ask_all::<T>(&set, &Units::new(half, unit), 0, &mut Plans::default());
+    }
+}
+
+#[test]
+fn crossings_off_f64() {
+    let corners = [
+        [2535, 43138, 513],
+        [223, 25708, 306],
+        [-1534, 51212, 610],
+        [1926, 8771, 104],
+        [-2363, 16841, 201],
+        [2750, 302, 3],
+    ];
+    crossings_off::<f64>(&corners, [[4, 5, 4], [4, 4, 4]], 1.0);
+}
+
+#[test]
+fn crossings_off_f32() {
+    let corners = [[24, 130, 21], [-11, -32, -5], [3, 84, 14], [-10, -157, -26], [-10, 135, 23]];
+    crossings_off::<f32>(&corners, [[6, 5, 9], [6, 5, 8]], 16.0);
+}
+
+/// The origin is outside by less than the set's error, and seems inside: of a Q that is wide, d >= (e - m) / h would be more than minus the distance.
+#[test]
+fn the_origin_is_outside_by_less_than_the_error() {
+    for thin in [2.0, 8.0, 32.0] {
+        let q = UnitBox::new(Vector::from([64.0, thin, 0.0])).unwrap();
+        for lean in [0.6, 0.75, 1.0, 1.25] {
+            for lean in [Lean::By(lean), Lean::ByAxis([8.0, lean, 8.0]), Lean::ByAxis([0.01, lean, 9.0])] {
+                let corner = |s: usize| [[-50, 60][s & 1], [-40, -1][s >> 1 & 1], [-70, 45][s >> 2]];
+                let points = (0..8).map(corner).collect();
+                let by_axis = matches!(lean, Lean::ByAxis(_));
+                let set = Lattice { unit: 0.5, lean, by_axis, ..Lattice::new(points) };
+                for relative in [0.0, 1e-6, 0.1] {
+                    let options = Options { relative, ..Options::default() };
+                    let mut memory = Workspace::<f64, 3, 64, 128>::new();
+                    let answer = memory.solver().solve_by_expansion(&set, &q, &options);
+                    holds(&answer, Dd::new(-0.5), &format!("by expansion {thin} {set:?}"));
+                    holds(&memory.solver().solve(&set, &q, &options), Dd::new(-0.5), &format!("{thin} {set:?}"));
+                }
+            }
+        }
+    }
+}
+
 /// Somewhere around the origin: inside, outside, or at a vertex up to a few units.
 fn placed(dice: &mut Dice, points: &[Point], near: i64) -> Vec<Point> {
     let aside =

@@ -268,6 +268,82 @@ fn two_half_spaces() {
     opposite::<f32>();
 }
 
+/// Points that a body is the hull of, told without error.
+struct Exact(Vec<[f64; 3]>);
+
+impl<T: Real> Support<T, 3> for Exact {
+    fn support(&self, u: &Vector<T, 3>) -> Result<Vector<T, 3>, Failure> {
+        let height = |p: &[f64; 3]| (0..3).fold(Dd::from(0.0), |sum, i| sum + Dd::product(u[i].to_f64(), p[i]));
+        let far = self.0.iter().reduce(|a, b| if height(b) > height(a) { b } else { a }).unwrap();
+        Ok(Vector::from(far.map(T::of)))
+    }
+    fn extent(&self) -> T {
+        T::of(self.0.iter().map(|p| p.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max) * 1.0001)
+    }
+    fn error(&self) -> T {
+        T::zero()
+    }
+}
+
+fn ask<T: Real>(a: &Body<'_, T, 3>, b: &Body<'_, T, 3>) -> Depth<T, 3> {
+    depth(a, b, &Options::default(), asks!(3))
+}
+
+fn holds(set: &Exact, placed: &Pose<3>, normal: [f64; 3], pose: &Pose<3>) {
+    let half_space = HalfSpace::<f32, 3>::new(vector(normal), 0.0).unwrap();
+    let r = ask(&placed.body::<f32>(set), &pose.body(&half_space));
+    let d = truth((&normal, 0.0, pose), (&set.0, 0.0, placed));
+    let (lower, upper) = (Dd::from(f64::from(r.lower)), Dd::from(f64::from(r.upper)));
+    assert!(lower <= d && d <= upper, "{d:?} {r:?} {:?} {placed:?} {normal:?} {pose:?}", set.0);
+}
+
+/// A point far from its frame, which the frame's position brings back to the plane: what is left is less than a roundoff of a roundoff of the terms.
+#[test]
+fn a_point_on_the_plane_far_from_its_frame() {
+    let mut dice = Dice::new(41);
+    for _ in 0..200 {
+        let set = Exact(vec![std::array::from_fn(|_| (9e6 * dice.signed()).round())]);
+        let mut placed = Pose::<3> { rotation: dice.rotation(), ..Pose::identity() };
+        placed.rotation = placed.rotation.map(|row| row.map(exact::<f32>));
+        let away = placed.turned(&set.0[0]);
+        placed.translation = away.map(|x| -exact::<f32>(x.to_f64()));
+        let left = std::array::from_fn(|i| exact::<f32>((away[i] + Dd::from(placed.translation[i])).to_f64()));
+        let pose = Pose { translation: left, ..Pose::identity() };
+        holds(&set, &placed, dice.direction().map(exact::<f32>), &pose);
+    }
+}
+
+/// Two corners that are equally deep, up to what the turned direction is rounded by: the wrong one may be asked.
+#[test]
+fn two_corners_that_are_equally_deep() {
+    let mut dice = Dice::new(42);
+    for _ in 0..200 {
+        let rotation = dice.rotation::<3>().map(|row| row.map(exact::<f32>));
+        let placed = Pose { rotation, ..Pose::identity() };
+        let normal = dice.direction::<3>().map(exact::<f32>);
+        let [x, y]: [f64; 2] = std::array::from_fn(|j| (0..3).map(|i| rotation[i][j] * normal[i]).sum());
+        let size = 8e6 / x.abs().max(y.abs());
+        let end = [(y * size).round(), -(x * size).round(), 0.0];
+        holds(&Exact(vec![end, end.map(|x| -x)]), &placed, normal, &Pose::identity());
+    }
+}
+
+/// Exactly opposite normals that are rounded differently are not told from others: that the half spaces overlap without end is not certain.
+#[test]
+fn opposite_normals_that_are_rounded() {
+    let mut dice = Dice::new(43);
+    for _ in 0..100 {
+        let n: [f64; 3] = std::array::from_fn(|_| (1e6 * dice.signed()).round());
+        let turn = Pose { rotation: dice.rotation(), ..Pose::<3>::identity() };
+        // A quarter turn about z in the body's frame.
+        let quarter = Pose { rotation: turn.rotation.map(|[x, y, z]| [y, -x, z]), ..turn };
+        let up = HalfSpace::<f64, 3>::new(vector(n), 0.0).unwrap();
+        let down = HalfSpace::<f64, 3>::new(vector([-3.0 * n[1], 3.0 * n[0], -3.0 * n[2]]), 0.0).unwrap();
+        let r = ask(&turn.body(&up), &quarter.body(&down));
+        assert!(r.lower <= 0.0 && r.upper >= 0.0, "{r:?}");
+    }
+}
+
 /// A box whose `support` is wrong, and which counts.
 struct Lazy {
     calls: AtomicU32,
