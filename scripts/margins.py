@@ -163,6 +163,21 @@ HIDDEN = {
     "span: axes off by rounding": "hidden by the rounding of heights",
     "second look: extents of a measured set": "second order: a few roundoffs of a margin",
     "distance: ball put back, error": "hidden by the rounding of heights, as large",
+    "polytope: centre beneath a point, in two words": "as \"surface folded over\": the proof needs it",
+    "rays: ball along a ray, seen from there": "one roundoff, of which the rounding of heights has ten",
+    "pair: rounding of the offset": "three roundoffs at most, for which heights and cores have room",
+    "pair: by direction, matrices that stretch": "errors are spread by the matrix as it is; the rest is hidden by the rounding of the sum",
+    "pair: ball in the points, rounding": "the ball counts in the core's extent and its twenty roundoffs",
+    "pair: ball that is an image, rounding of what is measured": "four of the bound's own six roundoffs",
+    "meridian: rounding of what is measured": "three roundoffs, where points are charged twenty",
+    "sectors: matrices that stretch": "64 roundoffs of a radius, where 68 of the size are charged",
+    "sectors: disc, scale": "hides and is hidden by the disc's rounding, as large",
+    "sectors: disc, rounding": "as above",
+    "ellipsoids: matrices that stretch": "32 roundoffs of a semi axis, where ball and points are charged 52",
+    "ellipsoids: rounding of what is measured": "of some twenty roundoffs the square is lost",
+    "half spaces: direction, rounding": "a roundoff's square beside low words of a roundoff",
+    "fine: nearest point aside, its error": "squared, over a length that is larger",
+    "fine: origin beneath each facet": "as \"origin beneath the lowest facet\": the proof needs it",
 }
 
 # Of the test program `core`.
