@@ -136,13 +136,13 @@ pub mod internal {
     pub use crate::bounds::{Axes, Bounds};
     #[cfg(feature = "grasp")]
     pub use crate::grasp::{forces::check as check_forces, linearized::opposed, numbers::usable};
+    pub use crate::math::load::{alone, one_by_one};
     pub use crate::math::norm;
     pub use crate::solver::depth::unbounded;
     pub use crate::solver::warm::REMEMBERED;
     pub use crate::solver::workspace::{initialize, open};
     pub use crate::support::hull::List;
-    pub use crate::support::load::{alone, one_by_one};
-    pub use crate::support::shapes::{check_numbers, check_sizes, near_unit};
+    pub use crate::support::range::{check_numbers, check_sizes, near_unit};
 }
 
 /// README's examples run as tests.

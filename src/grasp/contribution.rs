@@ -1,6 +1,6 @@
 //! What a contact or a finger adds to a wrench set.
 
-use crate::math::Vector;
+use crate::math::{Vector, largest};
 use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
@@ -29,7 +29,7 @@ pub trait Contribution<T: Real>: Support<T, 6> {
 #[inline]
 pub(super) fn near_unit<T: Real>(u: &Vector<T, 6>) -> Vector<T, 6> {
     let far = T::count(16);
-    let largest = u.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+    let largest = largest(u);
     // Divided by, not multiplied with the reciprocal: that overflows for subnormal numbers.
     if largest < far && largest * far > T::one() || !(largest > T::zero()) { *u } else { u.map(|x| x / largest) }
 }

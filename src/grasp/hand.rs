@@ -6,8 +6,8 @@ use super::contact::{Contact, ContactError, GraspError};
 use super::frame::WrenchFrame;
 use super::jacobian::Jacobian;
 use super::primitive::Primitive;
-use super::svd::{Svd, dot};
-use crate::math::Vector;
+use super::svd::Svd;
+use crate::math::{Vector, dot};
 use crate::scalar::Real;
 
 /// The active forces of a contact, U^a = U ∩ range(J): { center + disc x : |x| <= 1 } in R^4, for unit normal force

@@ -2,7 +2,8 @@
 
 use super::contact::ContactError;
 use super::numbers::{check_tolerance, usable};
-use super::svd::{Svd, dot};
+use super::svd::Svd;
+use crate::math::dot;
 use crate::scalar::Real;
 
 /// The largest number of joints of a finger.

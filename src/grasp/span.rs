@@ -5,7 +5,7 @@ use nalgebra::SMatrix;
 use super::contact::ContactError;
 use super::numbers::check_tolerance;
 use super::primitive::Primitive;
-use super::svd::Triangle;
+use super::svd::Triangular;
 use crate::math::{Vector, norm};
 use crate::scalar::Real;
 
@@ -44,7 +44,7 @@ impl<T: Real> Subspace<T> {
     /// [`ContactError::Tolerance`].
     pub fn new(primitives: &[Primitive<T>], tolerance: T) -> Result<Self, ContactError> {
         check_tolerance(tolerance)?;
-        let mut triangle = Triangle::new();
+        let mut triangle = Triangular::new();
         let mut touched = [false; 6];
         for primitive in primitives {
             let columns = primitive.disc().data.0.map(Vector::from);

@@ -4,6 +4,7 @@
 //! keeps zero columns and columns that are orthogonal already as they are, bit by bit, and finds small singular values
 //! to high relative accuracy.
 
+use crate::math::dot;
 use crate::scalar::Real;
 
 /// Sweeps until orthogonality is to rounding: convergence is quadratic, 4 to 8 are usual.
@@ -72,17 +73,13 @@ fn rotated<T: Real, const K: usize>(x: &[T; K], y: &[T; K], c: T, s: T) -> ([T; 
     (core::array::from_fn(|i| c * x[i] - s * y[i]), core::array::from_fn(|i| s * x[i] + c * y[i]))
 }
 
-pub(super) fn dot<T: Real, const K: usize>(x: &[T; K], y: &[T; K]) -> T {
-    x.iter().zip(y).fold(T::zero(), |s, (&a, &b)| s + a * b)
-}
-
 /// The triangular factor of a matrix that arrives row by row: the same singular values and the same V, in N x N numbers.
 /// Givens rotations; rows should be of size 1 or less.
-pub(super) struct Triangle<T, const N: usize> {
+pub(super) struct Triangular<T, const N: usize> {
     rows: [[T; N]; N],
 }
 
-impl<T: Real, const N: usize> Triangle<T, N> {
+impl<T: Real, const N: usize> Triangular<T, N> {
     pub fn new() -> Self {
         Self { rows: [[T::zero(); N]; N] }
     }
@@ -166,7 +163,7 @@ mod tests {
         let mut dice = Dice(9);
         for _ in 0..200 {
             let columns: [[f64; 20]; 6] = core::array::from_fn(|_| core::array::from_fn(|_| dice.next()));
-            let mut triangle = Triangle::new();
+            let mut triangle = Triangular::new();
             for r in 0..20 {
                 triangle.add(core::array::from_fn(|c| columns[c][r]));
             }

@@ -1,10 +1,12 @@
 //! Vectors, and arithmetic with more than one word.
 
 mod accumulator;
+pub(crate) mod load;
 mod two_words;
 
 use crate::scalar::Real;
 pub(crate) use accumulator::Accumulator;
+use load::one_by_one;
 use nalgebra::{ArrayStorage, SVector};
 pub use two_words::TwoWords;
 
@@ -23,14 +25,43 @@ pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
     if squared > T::SAFE_SQUARE && squared <= T::HUGE { squared.root() } else { far_norm(v) }
 }
 
-/// v / |v| for v not zero, also where squares under- or overflow.
+/// |x| without a call.
+#[inline(always)]
+pub(crate) fn magnitude<T: Real>(x: T) -> T {
+    x.at_least(-x)
+}
+
+/// max |x_i|, of those that are numbers.
+#[inline(always)]
+pub(crate) fn largest<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
+    v.iter().fold(T::zero(), |m, &x| m.at_least(magnitude(x)))
+}
+
+/// v / |v|, also where squares under- or overflow; zero for zero.
 #[inline]
 pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     let squared = v.dot(v);
     if squared > T::SAFE_SQUARE && squared <= T::HUGE {
-        return v * (T::one() / squared.root());
+        v * (T::one() / squared.root())
+    } else {
+        one_by_one(&far_unit(*v))
     }
-    let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+}
+
+/// x . y of numbers in a row, added up in their order.
+#[inline]
+pub(crate) fn dot<T: Real, const K: usize>(x: &[T; K], y: &[T; K]) -> T {
+    x.iter().zip(y).fold(T::zero(), |s, (&a, &b)| s + a * b)
+}
+
+/// In and out by value, so that the caller's vector stays in registers on the usual path.
+#[cold]
+#[inline(never)]
+fn far_unit<T: Real, const N: usize>(v: Vector<T, N>) -> Vector<T, N> {
+    let largest = largest(&v);
+    if !(largest > T::zero()) {
+        return v;
+    }
     let scaled = v.map(|x| x / largest);
     scaled * (T::one() / scaled.dot(&scaled).root())
 }
@@ -38,7 +69,7 @@ pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
 #[cold]
 #[inline(never)]
 fn far_norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
-    let largest = v.iter().fold(T::zero(), |m, x| m.at_least(x.abs()));
+    let largest = largest(v);
     if !(largest > T::zero()) {
         return T::zero();
     }

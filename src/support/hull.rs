@@ -1,9 +1,10 @@
 //! Convex hulls of point lists: by linear scan (any dimension), or by hill climbing on a prepared graph (3-D).
 
 use super::graph::{HullGraph, SEEDS, Word};
-use super::load::one_by_one;
-use super::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled};
+use super::range::{above, check_numbers, in_range, length, rescaled};
+use super::shapes::ShapeError;
 use super::{Failure, Support};
+use crate::math::load::one_by_one;
 use crate::math::{TwoWords, Vector, norm};
 use crate::scalar::Real;
 

@@ -30,8 +30,8 @@ mod combine;
 pub(crate) mod failure;
 mod graph;
 pub(crate) mod hull;
-pub(crate) mod load;
-pub(crate) mod shapes;
+pub(crate) mod range;
+mod shapes;
 mod solids;
 
 pub use combine::{Difference, Join, Linear, Margin, Rigid, Scaled, Sum};
@@ -40,7 +40,6 @@ pub use failure::Failure;
 pub(crate) use graph::{GraphWriter, SEEDS};
 pub use graph::{HullGraph, Word, graph_len, large_graph_len};
 pub use hull::{Hull, Points};
-pub(crate) use load::one_by_one;
 pub use shapes::{BoxShape, Ellipsoid, Point, ShapeError, Sphere};
 pub use solids::{Capsule, Cone, Cylinder};
 

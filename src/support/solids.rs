@@ -1,9 +1,10 @@
 //! Solids of revolution in three dimensions. The axis is z, the centre of the height is the origin. (The capsule exists in the plane too.)
 
-use super::load::one_by_one;
-use super::shapes::{ShapeError, check_sizes, in_range, length, rescaled, signed, unit};
+use super::range::{check_sizes, in_range, length, rescaled, signed};
+use super::shapes::ShapeError;
 use super::{Failure, Support, Symmetry, Turning};
-use crate::math::{TwoWords, Vector};
+use crate::math::load::one_by_one;
+use crate::math::{TwoWords, Vector, unit};
 use crate::scalar::Real;
 
 /// A cylinder: `x^2 + y^2 <= radius^2`, `|z| <= half_height`. One square root and one division.

@@ -17,8 +17,9 @@
 //! *Regularizing the abstract convex program*, 1981), decided with a tolerance: in exact arithmetic a force on the
 //! edge of the cone is active, and one beside it is not.
 
-use super::super::svd::{Triangle, dot};
-use super::program::Program;
+use super::super::svd::Triangular;
+use super::program::ConeProgram;
+use crate::math::dot;
 use crate::scalar::Real;
 
 /// The largest number of contacts of a finger.
@@ -65,7 +66,7 @@ impl<T: Real> Face<T> {
     fn find_basis(&mut self, equations: &[[T; WIDTH]], tolerance: T) {
         let (zero, one) = (T::zero(), T::one());
         let largest = self.forces.iter().flatten().flatten().fold(one, |m, x| m.at_least(x.abs()));
-        let mut triangle = Triangle::<T, WIDTH>::new();
+        let mut triangle = Triangular::<T, WIDTH>::new();
         for equation in equations {
             let mut row = [zero; WIDTH];
             for i in 0..MAX_CONTACTS {
@@ -99,36 +100,15 @@ impl<T: Real> Face<T> {
 
     /// The point inside and its margin; or a contact without one, and the w that says so.
     fn find_inside(&mut self, tolerance: T) -> Option<(usize, [T; 4])> {
-        let (zero, one) = (T::zero(), T::one());
+        let zero = T::zero();
         // Normal forces only are possible without equations.
         let upright = core::array::from_fn(|d| self.basis.iter().fold(zero, |s, [first, ..]| s + first[d]));
         self.set_inside(upright);
         if self.margin > T::of(0.5) {
             return None;
         }
-        let mut program = Program::<T, MAX_CONTACTS, { WIDTH + 1 }, { 2 * (WIDTH + 1) }> {
-            cones: [[[zero; WIDTH + 1]; 4]; MAX_CONTACTS],
-            rows: [[zero; WIDTH + 1]; 2 * (WIDTH + 1)],
-            bounds: [zero; 2 * (WIDTH + 1)],
-        };
-        for i in 0..MAX_CONTACTS {
-            if presses(&self.forces[i]) {
-                for c in 0..4 {
-                    for d in 0..WIDTH {
-                        program.cones[i][c][d] = self.basis[i][c][d];
-                    }
-                }
-                program.cones[i][0][WIDTH] = -one;
-            }
-        }
-        for d in 0..WIDTH + 1 {
-            if program.cones.iter().flatten().any(|row| !row[d].is_zero()) {
-                (program.rows[2 * d][d], program.rows[2 * d + 1][d]) = (one, -one);
-                (program.bounds[2 * d], program.bounds[2 * d + 1]) = (one, one);
-            }
-        }
         let (mut objective, mut start) = ([zero; WIDTH + 1], [zero; WIDTH + 1]);
-        (objective[WIDTH], start[WIDTH]) = (one, -T::of(0.5));
+        (objective[WIDTH], start[WIDTH]) = (T::one(), -T::of(0.5));
         let mut cone_duals = [[zero; 4]; MAX_CONTACTS];
         let pressing = self.forces.iter().filter(|map| presses(map)).count();
         for i in 0..MAX_CONTACTS {
@@ -136,6 +116,7 @@ impl<T: Real> Face<T> {
                 cone_duals[i][0] = T::count(pressing).recip();
             }
         }
+        let program = self.program();
         let mut it = program.start(start, cone_duals, [T::of(0.25); 2 * (WIDTH + 1)]);
         for (d, rest) in program.residual(&objective, &it).iter().enumerate() {
             it.row_duals[2 * d] += zero.at_least(*rest);
@@ -161,6 +142,34 @@ impl<T: Real> Face<T> {
             }
         }
         Some(strongest)
+    }
+
+    /// The largest t, the last coordinate, with s_i - |y_i| >= t for all contacts that can press; |z_d| and t at most 1.
+    #[inline(always)]
+    fn program(&self) -> ConeProgram<T, MAX_CONTACTS, { WIDTH + 1 }, { 2 * (WIDTH + 1) }> {
+        let (zero, one) = (T::zero(), T::one());
+        let mut program = ConeProgram {
+            cones: [[[zero; WIDTH + 1]; 4]; MAX_CONTACTS],
+            rows: [[zero; WIDTH + 1]; 2 * (WIDTH + 1)],
+            bounds: [zero; 2 * (WIDTH + 1)],
+        };
+        for i in 0..MAX_CONTACTS {
+            if presses(&self.forces[i]) {
+                for c in 0..4 {
+                    for d in 0..WIDTH {
+                        program.cones[i][c][d] = self.basis[i][c][d];
+                    }
+                }
+                program.cones[i][0][WIDTH] = -one;
+            }
+        }
+        for d in 0..WIDTH + 1 {
+            if program.cones.iter().flatten().any(|row| !row[d].is_zero()) {
+                (program.rows[2 * d][d], program.rows[2 * d + 1][d]) = (one, -one);
+                (program.bounds[2 * d], program.bounds[2 * d + 1]) = (one, one);
+            }
+        }
+        program
     }
 
     fn set_inside(&mut self, z: [T; WIDTH]) {

@@ -1,6 +1,7 @@
 //! A finger as a whole: contacts that share their joints, and what the joints can bear.
 
 mod face;
+mod lorentz;
 mod program;
 mod tuples;
 
@@ -15,7 +16,7 @@ use super::hand::{ActiveForces, HandContact};
 use super::jacobian::MAX_JOINTS;
 use super::numbers::{check_tolerance, usable};
 use super::primitive::frobenius;
-use super::svd::Triangle;
+use super::svd::Triangular;
 use crate::math::{Vector, norm};
 use crate::scalar::Real;
 use crate::support::{Failure, Support};
@@ -279,7 +280,7 @@ impl<'a, T: Real> Parts<'a, T> {
     /// An orthonormal basis of the complement of the range of all Jacobians on top of each other; the rest is zero.
     fn complement(&self, tolerance: T) -> [[T; WIDTH]; WIDTH] {
         let largest = self.columns.iter().flatten().fold(T::zero(), |m, x| m.at_least(x.abs()));
-        let mut triangle = Triangle::<T, WIDTH>::new();
+        let mut triangle = Triangular::<T, WIDTH>::new();
         for column in &self.columns {
             triangle.add(column.map(|x| if largest > T::zero() { x / largest } else { x }));
         }

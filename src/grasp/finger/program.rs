@@ -16,11 +16,12 @@
 //!
 //! * L. Vandenberghe, *The CVXOPT linear and quadratic cone program solvers*, 2010 (all formulas).
 
-use super::super::svd::dot;
+use super::lorentz::{Scaling, divided, exit, inside, jordan};
+use crate::math::dot;
 use crate::scalar::Real;
 
 /// The program without its objective.
-pub(super) struct Program<T, const K: usize, const N: usize, const R: usize> {
+pub(super) struct ConeProgram<T, const K: usize, const N: usize, const R: usize> {
     /// The rows of C_i. A first row of zeros: there is no such cone.
     pub cones: [[[T; N]; 4]; K],
     pub rows: [[T; N]; R],
@@ -46,7 +47,7 @@ const SHORTER: usize = 6;
 /// A number for each constraint, in the order of cones and rows.
 type Sides<T, const K: usize, const R: usize> = ([[T; 4]; K], [T; R]);
 
-impl<T: Real, const K: usize, const N: usize, const R: usize> Program<T, K, N, R> {
+impl<T: Real, const K: usize, const N: usize, const R: usize> ConeProgram<T, K, N, R> {
     fn has_cone(&self, i: usize) -> bool {
         self.cones.get(i).is_some_and(|[first, ..]| first.iter().any(|x| !x.is_zero()))
     }
@@ -93,230 +94,222 @@ impl<T: Real, const K: usize, const N: usize, const R: usize> Program<T, K, N, R
 
     /// One step towards the optimum; `None` when arithmetic has nothing left to say.
     pub fn step(&self, b: &[T; N], it: &Iterate<T, K, N, R>) -> Option<Iterate<T, K, N, R>> {
-        let (zero, one) = (T::zero(), T::one());
-        let mut scalings = [Scaling { beta: one, v: [zero; 4], point: [zero; 4] }; K];
-        let mut widths = [one; R];
-        // The constraints in scaled coordinates, where slack and dual are the same point.
-        let mut columns: [Sides<T, K, R>; N] = [([[zero; 4]; K], [zero; R]); N];
-        let mut points: Sides<T, K, R> = ([[zero; 4]; K], [zero; R]);
-        let mut degree = zero;
-        for i in 0..K {
-            if self.has_cone(i) {
-                scalings[i] = Scaling::new(&it.cone_slacks[i], &it.cone_duals[i])?;
-                for d in 0..N {
-                    columns[d].0[i] = scalings[i].inverse(&self.cones[i].map(|row| row[d]));
-                }
-                points.0[i] = scalings[i].point;
-                degree += one;
-            }
+        let one = T::one();
+        let mut scaled = Scaled::empty();
+        if !scaled.scale(self, it) {
+            return None;
         }
-        for r in 0..R {
-            if self.has_row(r) {
-                let (slack, dual) = (it.row_slacks[r], it.row_duals[r]);
-                widths[r] = (slack / dual).root();
-                for d in 0..N {
-                    columns[d].1[r] = -self.rows[r][d] / widths[r];
-                }
-                points.1[r] = (slack * dual).root();
-                degree += one;
-            }
-        }
-        let factor = Factor::new(columns);
-        let residual = factor.forward(&self.residual(b, it));
-        // For wanted sums q of scaled slack and dual steps: the step of z, and those of the slacks.
-        let direction = |q: &Sides<T, K, R>| {
-            let (mut rest, mut y) = (*q, residual);
-            // Twice: what the duals get is then orthogonal to the constraints to rounding, and no residual is made.
-            for _ in 0..2 {
-                for (y, column) in y.iter_mut().zip(&factor.columns) {
-                    let along = product(column, &rest);
-                    *y += along;
-                    add_sides(&mut rest, -along, column);
-                }
-            }
-            let mut slacks = *q;
-            add_sides(&mut slacks, -one, &rest);
-            for (t, column) in residual.iter().zip(&factor.columns) {
-                add_sides(&mut slacks, *t, column);
-            }
-            (factor.backward(&y), slacks)
-        };
-        let duals = |q: &Sides<T, K, R>, slacks: &Sides<T, K, R>| -> Sides<T, K, R> {
-            (
-                core::array::from_fn(|i| core::array::from_fn(|c| q.0[i][c] - slacks.0[i][c])),
-                core::array::from_fn(|r| q.1[r] - slacks.1[r]),
-            )
-        };
-        let reach = |step: &Sides<T, K, R>| {
-            let mut inverse = zero;
-            for i in 0..K {
-                if self.has_cone(i) {
-                    inverse = inverse.at_least(exit(&points.0[i], &step.0[i]));
-                }
-            }
-            for r in 0..R {
-                if self.has_row(r) {
-                    inverse = inverse.at_least(-step.1[r] / points.1[r]);
-                }
-            }
-            inverse
-        };
-        let longest = |s: &Sides<T, K, R>, d: &Sides<T, K, R>, share: T| {
-            let inverse = reach(s).at_least(reach(d));
-            if inverse > share { share / inverse } else { one }
-        };
+        scaled.factor.orthogonalise();
+        scaled.residual = scaled.factor.forward(&self.residual(b, it));
 
         // Straight to complementarity zero, to see how far that goes.
-        let towards = (points.0.map(|p| p.map(|x| -x)), points.1.map(|x| -x));
-        let (_, slack_steps) = direction(&towards);
-        let dual_steps = duals(&towards, &slack_steps);
-        let left = one - longest(&slack_steps, &dual_steps, one);
-        let wanted = (self.gap(it) / degree * (left * left * left)).at_least(T::count(LEAST_PRODUCT) * T::ROUNDOFF);
+        let (mut straight, mut step) = (Step::empty(), Step::empty());
+        scaled.solve(&scaled.towards_zero(), &mut straight);
+        let left = one - self.longest(&scaled, &straight, one);
+        let gap = self.gap(it) / scaled.degree;
+        let wanted = (gap * (left * left * left)).at_least(T::count(LEAST_PRODUCT) * T::ROUNDOFF);
         // Then with the curvature that this step has met, towards the central path; or, where that is a short way, straight to its
         // nearest point.
-        let centred = |product: T, met: T| {
-            let mut q = towards;
-            for i in 0..K {
-                if self.has_cone(i) {
-                    let [first, a, b, c] = jordan(&slack_steps.0[i], &dual_steps.0[i]).map(|x| -x * met);
-                    let wanted = divided(&points.0[i], &[product + first, a, b, c]);
-                    add(&mut q.0[i], T::one(), &wanted);
-                }
-            }
-            for r in 0..R {
-                if self.has_row(r) {
-                    q.1[r] += (product - met * (slack_steps.1[r] * dual_steps.1[r])) / points.1[r];
-                }
-            }
-            let (dz, slacks) = direction(&q);
-            let duals = duals(&q, &slacks);
-            let length = longest(&slacks, &duals, T::of(0.99));
-            (dz, slacks, duals, length)
-        };
-        let mut step = centred(wanted, one);
-        if step.3 < T::of(0.25) {
-            step = centred(self.gap(it) / degree, zero);
+        let mut length = self.centre(&scaled, &straight, wanted, one, &mut step);
+        if length < T::of(0.25) {
+            length = self.centre(&scaled, &straight, gap, T::zero(), &mut step);
         }
-        let (dz, slack_steps, dual_steps, length) = step;
-
-        let moved = |length: T| {
-            let mut next = it.clone();
-            add(&mut next.z, length, &dz);
-            for i in 0..K {
-                if self.has_cone(i) {
-                    let (slack, dual) = (scalings[i].apply(&slack_steps.0[i]), scalings[i].inverse(&dual_steps.0[i]));
-                    add(&mut next.cone_slacks[i], length, &slack);
-                    add(&mut next.cone_duals[i], length, &dual);
-                    if !(inside(&next.cone_slacks[i]) && inside(&next.cone_duals[i])) {
-                        return None;
-                    }
-                }
-            }
-            for r in 0..R {
-                if self.has_row(r) {
-                    next.row_slacks[r] += length * (slack_steps.1[r] * widths[r]);
-                    next.row_duals[r] += length * (dual_steps.1[r] / widths[r]);
-                    if !(next.row_slacks[r] > zero && next.row_duals[r] > zero) {
-                        return None;
-                    }
-                }
-            }
-            next.z.iter().all(|x| x.finite()).then_some(next)
-        };
         // Rounding may be more than what is left to the edge.
-        let mut length = length;
         for _ in 0..SHORTER {
-            if let Some(next) = moved(length) {
+            if let Some(next) = self.moved(&scaled, it, &step, length) {
                 return Some(next);
             }
             length *= T::of(0.5);
         }
         None
     }
-}
 
-/// The scaling W of a cone: symmetric, maps L onto itself, and `W dual = W^-1 slack`, which is `point`.
-/// `W = beta (2 v v^T - J)` with J = diag(1, -1, -1, -1).
-#[derive(Clone, Copy)]
-struct Scaling<T> {
-    beta: T,
-    v: [T; 4],
-    point: [T; 4],
-}
+    /// How far one can go, up to 1: the share of the way to the nearest edge.
+    fn longest(&self, scaled: &Scaled<T, K, N, R>, step: &Step<T, K, N, R>, share: T) -> T {
+        let reach = |sides: &Sides<T, K, R>| {
+            let mut inverse = T::zero();
+            for i in 0..K {
+                if self.has_cone(i) {
+                    inverse = inverse.at_least(exit(&scaled.points.0[i], &sides.0[i]));
+                }
+            }
+            for r in 0..R {
+                if self.has_row(r) {
+                    inverse = inverse.at_least(-sides.1[r] / scaled.points.1[r]);
+                }
+            }
+            inverse
+        };
+        let inverse = reach(&step.slacks).at_least(reach(&step.duals));
+        if inverse > share { share / inverse } else { T::one() }
+    }
 
-impl<T: Real> Scaling<T> {
-    fn new(slack: &[T; 4], dual: &[T; 4]) -> Option<Self> {
-        let (one, two) = (T::one(), T::count(2));
-        let (s, d) = (determinant(slack).root(), determinant(dual).root());
-        if !(s > T::zero() && d > T::zero()) {
-            return None;
+    /// The step to where all products of slack and dual are `product`, if a step `straight` has met the share `met` of its own curvature; and how far
+    /// to go along it.
+    fn centre(
+        &self,
+        scaled: &Scaled<T, K, N, R>,
+        straight: &Step<T, K, N, R>,
+        product: T,
+        met: T,
+        step: &mut Step<T, K, N, R>,
+    ) -> T {
+        let mut q = scaled.towards_zero();
+        for i in 0..K {
+            if self.has_cone(i) {
+                let [first, a, b, c] = jordan(&straight.slacks.0[i], &straight.duals.0[i]).map(|x| -x * met);
+                let wanted = divided(&scaled.points.0[i], &[product + first, a, b, c]);
+                add(&mut q.0[i], T::one(), &wanted);
+            }
         }
-        let (slack_unit, dual_unit) = (slack.map(|x| x / s), dual.map(|x| x / d));
-        let gamma = ((one + dot(&slack_unit, &dual_unit)) / two).root();
-        let mirrored = reflected(&dual_unit);
-        let mut v: [T; 4] = core::array::from_fn(|c| (slack_unit[c] + mirrored[c]) / (two * gamma));
-        v[0] += one;
-        let length = (two * v[0]).root();
-        let mut scaling = Self { beta: (s / d).root(), v: v.map(|x| x / length), point: [T::zero(); 4] };
-        scaling.point = scaling.apply(dual);
-        Some(scaling)
+        for r in 0..R {
+            if self.has_row(r) {
+                q.1[r] += (product - met * (straight.slacks.1[r] * straight.duals.1[r])) / scaled.points.1[r];
+            }
+        }
+        scaled.solve(&q, step);
+        self.longest(scaled, step, T::of(0.99))
     }
 
-    fn apply(&self, x: &[T; 4]) -> [T; 4] {
-        let (along, mirrored) = (T::count(2) * dot(&self.v, x), reflected(x));
-        core::array::from_fn(|c| self.beta * (self.v[c] * along - mirrored[c]))
+    /// The iterate after so much of a step, if it is strictly inside.
+    fn moved(
+        &self,
+        scaled: &Scaled<T, K, N, R>,
+        it: &Iterate<T, K, N, R>,
+        step: &Step<T, K, N, R>,
+        length: T,
+    ) -> Option<Iterate<T, K, N, R>> {
+        let mut next = it.clone();
+        add(&mut next.z, length, &step.z);
+        for i in 0..K {
+            if self.has_cone(i) {
+                let scaling = &scaled.scalings[i];
+                let (slack, dual) = (scaling.apply(&step.slacks.0[i]), scaling.inverse(&step.duals.0[i]));
+                add(&mut next.cone_slacks[i], length, &slack);
+                add(&mut next.cone_duals[i], length, &dual);
+                if !(inside(&next.cone_slacks[i]) && inside(&next.cone_duals[i])) {
+                    return None;
+                }
+            }
+        }
+        for r in 0..R {
+            if self.has_row(r) {
+                next.row_slacks[r] += length * (step.slacks.1[r] * scaled.widths[r]);
+                next.row_duals[r] += length * (step.duals.1[r] / scaled.widths[r]);
+                if !(next.row_slacks[r] > T::zero() && next.row_duals[r] > T::zero()) {
+                    return None;
+                }
+            }
+        }
+        next.z.iter().all(|x| x.finite()).then_some(next)
+    }
+}
+
+/// Steps of z, and those of slacks and duals in scaled coordinates.
+struct Step<T, const K: usize, const N: usize, const R: usize> {
+    z: [T; N],
+    slacks: Sides<T, K, R>,
+    duals: Sides<T, K, R>,
+}
+
+impl<T: Real, const K: usize, const N: usize, const R: usize> Step<T, K, N, R> {
+    #[inline(always)]
+    fn empty() -> Self {
+        Self { z: [T::zero(); N], slacks: no_sides(), duals: no_sides() }
+    }
+}
+
+/// The constraints in scaled coordinates, where slack and dual are the same point. All of what a step needs is here, in one frame of the stack: its
+/// parts take it by reference, since the columns are some kilobytes.
+struct Scaled<T, const K: usize, const N: usize, const R: usize> {
+    scalings: [Scaling<T>; K],
+    widths: [T; R],
+    points: Sides<T, K, R>,
+    /// Number of constraints.
+    degree: T,
+    factor: Factor<T, K, N, R>,
+    /// U^-T times what the duals leave of the equation.
+    residual: [T; N],
+}
+
+impl<T: Real, const K: usize, const N: usize, const R: usize> Scaled<T, K, N, R> {
+    #[inline(always)]
+    fn empty() -> Self {
+        let zero = T::zero();
+        Self {
+            scalings: [Scaling::none(); K],
+            widths: [T::one(); R],
+            points: no_sides(),
+            degree: zero,
+            factor: Factor { columns: [no_sides(); N], upper: [[zero; N]; N], inverse: [zero; N] },
+            residual: [zero; N],
+        }
     }
 
-    fn inverse(&self, x: &[T; 4]) -> [T; 4] {
-        let (v, mirrored) = (reflected(&self.v), reflected(x));
-        let along = T::count(2) * dot(&v, x);
-        core::array::from_fn(|c| (v[c] * along - mirrored[c]) / self.beta)
+    /// Scalings, points and columns at the iterate; false where it is not strictly inside.
+    fn scale(&mut self, program: &ConeProgram<T, K, N, R>, it: &Iterate<T, K, N, R>) -> bool {
+        for i in 0..K {
+            if program.has_cone(i) {
+                let Some(scaling) = Scaling::new(&it.cone_slacks[i], &it.cone_duals[i]) else { return false };
+                for d in 0..N {
+                    self.factor.columns[d].0[i] = scaling.inverse(&program.cones[i].map(|row| row[d]));
+                }
+                self.points.0[i] = scaling.point;
+                self.scalings[i] = scaling;
+                self.degree += T::one();
+            }
+        }
+        for r in 0..R {
+            if program.has_row(r) {
+                let (slack, dual) = (it.row_slacks[r], it.row_duals[r]);
+                self.widths[r] = (slack / dual).root();
+                for d in 0..N {
+                    self.factor.columns[d].1[r] = -program.rows[r][d] / self.widths[r];
+                }
+                self.points.1[r] = (slack * dual).root();
+                self.degree += T::one();
+            }
+        }
+        true
     }
-}
 
-/// J x.
-fn reflected<T: Real>(&[s, a, b, c]: &[T; 4]) -> [T; 4] {
-    [s, -a, -b, -c]
-}
+    /// The sums of slack and dual steps that lead to complementarity zero.
+    fn towards_zero(&self) -> Sides<T, K, R> {
+        (self.points.0.map(|p| p.map(|x| -x)), self.points.1.map(|x| -x))
+    }
 
-/// s^2 - |y|^2, as (s - |y|)(s + |y|): the first factor is what counts near the boundary.
-fn determinant<T: Real>(&[s, a, b, c]: &[T; 4]) -> T {
-    let y = (a * a + b * b + c * c).root();
-    (s - y) * (s + y)
-}
-
-fn inside<T: Real>(x: &[T; 4]) -> bool {
-    let [s, ..] = *x;
-    s > T::zero() && determinant(x) > T::zero()
-}
-
-/// The product of the cone's Jordan algebra: (x.y, x_0 y_1 + y_0 x_1).
-fn jordan<T: Real>(x: &[T; 4], y: &[T; 4]) -> [T; 4] {
-    let mut product = core::array::from_fn(|c| x[0] * y[c] + y[0] * x[c]);
-    product[0] = dot(x, y);
-    product
-}
-
-/// The y with `jordan(x, y) = d`, for x inside of the cone.
-fn divided<T: Real>(x: &[T; 4], d: &[T; 4]) -> [T; 4] {
-    let first = dot(&reflected(x), d) / determinant(x);
-    let mut y = core::array::from_fn(|c| (d[c] - first * x[c]) / x[0]);
-    y[0] = first;
-    y
-}
-
-/// 1 / t for the t at which `point + t step` leaves the cone; 0 or less: it never does.
-fn exit<T: Real>(point: &[T; 4], step: &[T; 4]) -> T {
-    let size = determinant(point).root();
-    let (p, d) = (point.map(|x| x / size), step.map(|x| x / size));
-    let first = dot(&reflected(&p), &d);
-    let share = (first + d[0]) / (p[0] + T::one());
-    let [_, a, b, c] = core::array::from_fn(|i| d[i] - share * p[i]);
-    (a * a + b * b + c * c).root() - first
+    /// The steps for wanted sums q of slack and dual steps.
+    fn solve(&self, q: &Sides<T, K, R>, step: &mut Step<T, K, N, R>) {
+        // What is left of q, in the place of what comes of it.
+        let rest = &mut step.duals;
+        *rest = *q;
+        let mut y = self.residual;
+        // Twice: what the duals get is then orthogonal to the constraints to rounding, and no residual is made.
+        for _ in 0..2 {
+            for (y, column) in y.iter_mut().zip(&self.factor.columns) {
+                let along = product(column, rest);
+                *y += along;
+                add_sides(rest, -along, column);
+            }
+        }
+        step.slacks = *q;
+        add_sides(&mut step.slacks, -T::one(), rest);
+        for (t, column) in self.residual.iter().zip(&self.factor.columns) {
+            add_sides(&mut step.slacks, *t, column);
+        }
+        step.z = self.factor.backward(&y);
+        step.duals = *q;
+        add_sides(&mut step.duals, -T::one(), &step.slacks);
+    }
 }
 
 fn add<T: Real, const M: usize>(to: &mut [T; M], factor: T, x: &[T; M]) {
     to.iter_mut().zip(x).for_each(|(t, &x)| *t += factor * x);
+}
+
+#[inline(always)]
+fn no_sides<T: Real, const K: usize, const R: usize>() -> Sides<T, K, R> {
+    ([[T::zero(); 4]; K], [T::zero(); R])
 }
 
 /// x.y.
@@ -339,27 +332,26 @@ struct Factor<T, const K: usize, const N: usize, const R: usize> {
 }
 
 impl<T: Real, const K: usize, const N: usize, const R: usize> Factor<T, K, N, R> {
-    /// Gram-Schmidt, each column twice, or almost dependent ones would not be orthogonal. Dependent ones get no step.
-    fn new(mut columns: [Sides<T, K, R>; N]) -> Self {
-        let (mut upper, mut inverse) = ([[T::zero(); N]; N], [T::zero(); N]);
+    /// Gram-Schmidt, each column twice, or almost dependent ones would not be orthogonal. Dependent ones get no step. In place, from the constraints'
+    /// own columns.
+    fn orthogonalise(&mut self) {
         for j in 0..N {
-            let mut column = columns[j];
+            let mut column = self.columns[j];
             let whole = product(&column, &column);
             for _ in 0..2 {
                 for k in 0..j {
-                    let along = product(&columns[k], &column);
-                    upper[k][j] += along;
-                    add_sides(&mut column, -along, &columns[k]);
+                    let along = product(&self.columns[k], &column);
+                    self.upper[k][j] += along;
+                    add_sides(&mut column, -along, &self.columns[k]);
                 }
             }
             let rest = product(&column, &column);
             if rest > T::ROUNDOFF * T::ROUNDOFF * whole {
-                inverse[j] = rest.root().recip();
+                self.inverse[j] = rest.root().recip();
             }
-            column.0.iter_mut().flatten().chain(&mut column.1).for_each(|x| *x *= inverse[j]);
-            columns[j] = column;
+            column.0.iter_mut().flatten().chain(&mut column.1).for_each(|x| *x *= self.inverse[j]);
+            self.columns[j] = column;
         }
-        Self { columns, upper, inverse }
     }
 
     /// U^-T x.

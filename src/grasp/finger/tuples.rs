@@ -3,7 +3,7 @@
 //! The set is that of x = V z ([`Face`]: equations and friction cones) with `s_i <= cap_i` and `|torque_j . z| <=
 //! limit_j`. It contains 0. What is farthest along a tuple of values v comes from one of two places. Where there are
 //! no equations and every contact may do what is best for itself within the limits, that is the answer, in closed
-//! form. Else it is that of a small convex [`Program`].
+//! form. Else it is that of a small convex [`ConeProgram`].
 //!
 //! # The proof
 //!
@@ -18,11 +18,10 @@
 //! bound.
 
 use super::super::jacobian::MAX_JOINTS;
-use super::super::svd::dot;
 use super::UNSOLVED;
 use super::face::{Face, MAX_CONTACTS, WIDTH, presses};
-use super::program::{Iterate, Program};
-use crate::math::{Accumulator, Vector, norm};
+use super::program::{ConeProgram, Iterate};
+use crate::math::{Accumulator, Vector, dot, norm};
 use crate::scalar::Real;
 use crate::support::Failure;
 
@@ -143,7 +142,7 @@ impl<T: Real> Tuples<T> {
         alone: T,
     ) -> Result<(Tuple<T>, T), Failure> {
         let zero = T::zero();
-        let mut program = Program { cones: [[[zero; N]; 4]; K], rows: [[zero; N]; R], bounds: [zero; R] };
+        let mut program = ConeProgram { cones: [[[zero; N]; 4]; K], rows: [[zero; N]; R], bounds: [zero; R] };
         let mut b = [zero; N];
         let mut sides = program.rows.iter_mut().zip(&mut program.bounds);
         for ((cone, own), (&cap, values)) in program.cones.iter_mut().zip(&self.basis).zip(self.caps.iter().zip(values))
@@ -161,20 +160,7 @@ impl<T: Real> Tuples<T> {
                 }
             }
         }
-        // Duals that prove a bound, too, and that are about as far from their edges as the start is from its own: w = V b.
-        let w = program.cones.each_ref().map(|cone| cone.each_ref().map(|row| dot(row, &b)));
-        let product = w.iter().zip(&program.bounds).fold(zero, |s, (w, &cap)| s + cap * dot(w, w).root());
-        let (mut cone_duals, mut row_duals) = ([[zero; 4]; K], [zero; R]);
-        for r in 0..R {
-            if program.bounds[r] > zero {
-                row_duals[r] = product / program.bounds[r];
-            }
-        }
-        for i in 0..K {
-            row_duals[i] += row_duals[i];
-            cone_duals[i] = w[i].map(|x| -x);
-            cone_duals[i][0] += row_duals[i];
-        }
+        let (cone_duals, row_duals) = first_duals(&program, &b);
         let mut it = program.start(head(&self.start), cone_duals, row_duals);
         let (mut upper, mut lower, mut z) = (alone, zero, [zero; N]);
         for _ in 0..STEPS {
@@ -200,12 +186,34 @@ impl<T: Real> Tuples<T> {
     }
 }
 
+/// Duals that prove a bound, too, and that are about as far from their edges as the start is from its own: w = V b.
+fn first_duals<T: Real, const K: usize, const N: usize, const R: usize>(
+    program: &ConeProgram<T, K, N, R>,
+    b: &[T; N],
+) -> ([[T; 4]; K], [T; R]) {
+    let zero = T::zero();
+    let w = program.cones.each_ref().map(|cone| cone.each_ref().map(|row| dot(row, b)));
+    let product = w.iter().zip(&program.bounds).fold(zero, |s, (w, &cap)| s + cap * dot(w, w).root());
+    let (mut cone_duals, mut row_duals) = ([[zero; 4]; K], [zero; R]);
+    for r in 0..R {
+        if program.bounds[r] > zero {
+            row_duals[r] = product / program.bounds[r];
+        }
+    }
+    for i in 0..K {
+        row_duals[i] += row_duals[i];
+        cone_duals[i] = w[i].map(|x| -x);
+        cone_duals[i][0] += row_duals[i];
+    }
+    (cone_duals, row_duals)
+}
+
 /// The bound that the duals prove, rounding included.
 ///
 /// What the duals leave of the equation is summed in twice the precision, so that its error is its own roundoff. Then
 /// v.x of contact i has 10 roundoffs of its dual and its cap's, and `4 N` of that rest.
 fn bound<T: Real, const K: usize, const N: usize, const R: usize>(
-    program: &Program<T, K, N, R>,
+    program: &ConeProgram<T, K, N, R>,
     b: &[T; N],
     it: &Iterate<T, K, N, R>,
 ) -> T {

@@ -32,7 +32,7 @@ const POLISH: u32 = 8;
 
 /// A target, six points, and the weights that make the target of them.
 #[derive(Clone)]
-pub(super) struct Program<T> {
+pub(super) struct LinearProgram<T> {
     target: Vector<T, 6>,
     basis: Basis<T, 6>,
     weights: Vector<T, 6>,
@@ -44,7 +44,7 @@ pub(super) struct Program<T> {
     worn: u32,
 }
 
-impl<T: Real> Program<T> {
+impl<T: Real> LinearProgram<T> {
     /// Artificial points on the axes, at distance 1, on the side of the target. Points of W should be of that size, and are off by
     /// `errors` at most.
     pub fn new(target: &Vector<T, 6>, errors: &Vector<T, 6>) -> Self {

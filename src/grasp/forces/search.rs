@@ -3,7 +3,7 @@
 
 use super::super::contribution::Contribution;
 use super::super::wrench_set::{Norm, WrenchSet};
-use super::program::Program;
+use super::program::LinearProgram;
 use super::{ForceOptions, ForceOutcome, Forces, precision};
 use crate::math::{Vector, finite, norm, unit};
 use crate::polytope::simplex::Vertex;
@@ -20,7 +20,7 @@ const DOUBTS: u32 = 3;
 
 /// One search. Its program is in scaled coordinates: those of points divided by `rows`, that of w besides by `unit`, what a weight of 1 in the
 /// program is as a size.
-pub(super) struct Search<'a, 'b, T, C> {
+pub(super) struct ForceSearch<'a, 'b, T, C> {
     set: &'a WrenchSet<'b, T, C>,
     options: ForceOptions<T>,
     /// What the contacts shall exert.
@@ -33,9 +33,9 @@ pub(super) struct Search<'a, 'b, T, C> {
     /// The largest of them.
     extent: T,
     pub unit: T,
-    pub program: Program<T>,
+    pub program: LinearProgram<T>,
     /// The last state with sums that were right; dependent points make them wrong.
-    pub sound: Program<T>,
+    pub sound: LinearProgram<T>,
     /// Points from directions that were known before, and from that of w, which symmetric grasps often ask for; not yet used.
     pool: Vec<Vertex<T, 6>, 7>,
     pub iterations: u32,
@@ -44,7 +44,7 @@ pub(super) struct Search<'a, 'b, T, C> {
     pub last: Vector<T, 6>,
 }
 
-impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
+impl<'a, 'b, T: Real, C: Contribution<T>> ForceSearch<'a, 'b, T, C> {
     pub fn new(set: &'a WrenchSet<'b, T, C>, wrench: Vector<T, 6>, options: ForceOptions<T>) -> Result<Self, Failure> {
         let mut reach = Vector::<T, 6>::zeros();
         for i in 0..6 {
@@ -63,10 +63,10 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
         let rows = reach.map(|x| if x > extent * (T::count(64) * T::ROUNDOFF) { power(x) } else { extent });
         let size = power(wrench.iter().fold(T::zero(), |m, x| m.at_least(x.abs())));
         let target = (wrench / size).zip_map(&rows, |x, row| x * (extent / row));
-        let program = Program::new(&target, &rows.map(|row| set.error() / row));
+        let program = LinearProgram::new(&target, &rows.map(|row| set.error() / row));
         let (zero, pool) = (T::zero(), Vec::new());
         let unit = size / extent;
-        Ok(Search {
+        Ok(ForceSearch {
             set,
             options,
             asked: wrench,
@@ -87,7 +87,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> Search<'a, 'b, T, C> {
     /// Begins anew, with as many iterations as before.
     pub fn restart(&mut self) {
         let errors = self.rows.map(|row| self.set.error() / row);
-        self.program = Program::new(self.program.target(), &errors);
+        self.program = LinearProgram::new(self.program.target(), &errors);
         self.sound = self.program.clone();
         self.pool.clear();
         (self.wrench, self.blur) = (self.asked, T::zero());

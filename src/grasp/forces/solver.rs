@@ -28,7 +28,7 @@ use super::super::contribution::Contribution;
 use super::super::finger::{Finger, MAX_CONTACTS};
 use super::super::numbers::usable;
 use super::super::wrench_set::WrenchSet;
-use super::search::Search;
+use super::search::ForceSearch;
 use super::{ForceError, ForceOptions, ForceOutcome, Forces, precision};
 use crate::math::{Vector, norm, unit};
 use crate::scalar::Real;
@@ -193,7 +193,7 @@ impl<T: Real> ForceSolver<T> {
         external: &Vector<T, 6>,
     ) -> Result<(), Failure> {
         let known = core::mem::take(&mut self.known);
-        let mut search = Search::new(set, -external, *options)?;
+        let mut search = ForceSearch::new(set, -external, *options)?;
         let (unknown, mut aside, mut warm) = (*forces, forces.direction, None);
         if !known.is_empty() {
             // A failure along a direction that is known from elsewhere says nothing of this search.
@@ -223,7 +223,7 @@ impl<T: Real> ForceSolver<T> {
     #[inline(never)] // called twice
     fn attempt<C: Contribution<T>>(
         &mut self,
-        search: &mut Search<'_, '_, T, C>,
+        search: &mut ForceSearch<'_, '_, T, C>,
         known: &[Vector<T, 6>],
         aside: &Vector<T, 6>,
         forces: &mut Forces<T>,
@@ -258,7 +258,7 @@ impl<T: Real> ForceSolver<T> {
     #[inline(never)] // called twice
     fn conclude<C: Contribution<T>>(
         &mut self,
-        search: &mut Search<'_, '_, T, C>,
+        search: &mut ForceSearch<'_, '_, T, C>,
         directions: &[Vector<T, 6>],
         forces: &mut Forces<T>,
         shares: &mut [Vector<T, 6>],

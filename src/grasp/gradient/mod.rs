@@ -31,12 +31,12 @@ mod ties;
 
 pub use refine::{Kink, Refined, Share};
 
-use super::contact::ContactError;
+use super::contact::{Contact, ContactError};
 use super::frame::WrenchFrame;
 use super::hand::{ActiveForces, HandContact};
 use super::jacobian::MAX_JOINTS;
-use super::svd::{Svd, dot};
-use crate::math::{Vector, norm};
+use super::svd::Svd;
+use crate::math::{Vector, dot, norm};
 use crate::scalar::Real;
 
 /// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
@@ -64,6 +64,27 @@ impl<T: Real> ContactGradient<T> {
     fn zero(jacobian: Option<[[T; MAX_JOINTS]; 4]>) -> Self {
         let (none, zero) = (Vector::zeros(), T::zero());
         Self { position: none, rotation: none, normal: none, mu: zero, mus: zero, force_cap: zero, jacobian }
+    }
+
+    /// With respect to position, rotation and normal, of `scale` times a contact force as it stands.
+    fn of_motion(
+        contact: &Contact<T>,
+        frame: &WrenchFrame<T>,
+        force: &Vector<T, 4>,
+        u: &Vector<T, 6>,
+        scale: T,
+    ) -> Self {
+        let ([o, t], n) = (contact.tangents(), contact.normal());
+        let in_space = n * force[0] + o * force[1] + t * force[2];
+        let (a, b) = (Vector::from([u[0], u[1], u[2]]), Vector::from([u[3], u[4], u[5]]));
+        let arm = (contact.position() - frame.reference()).map(|x| x / frame.torque_scale());
+        let rotation = (in_space.cross(&(a + b.cross(&arm))) + n.cross(&b) * force[3]) * scale;
+        Self {
+            position: in_space.cross(&b).map(|x| x / frame.torque_scale()) * scale,
+            rotation,
+            normal: rotation.cross(n),
+            ..Self::zero(None)
+        }
     }
 }
 
@@ -155,14 +176,11 @@ impl<T: Real> Refined<'_, T> {
             let jacobian = hand.jacobian.map(|_| [[zero; MAX_JOINTS]; 4]);
             return Ok(Some(ContactGradient::zero(jacobian)));
         }
-        let u = &self.answer.direction;
-        let g = frame.contact_map(contact).tr_mul(u);
+        let g = frame.contact_map(contact).tr_mul(&self.answer.direction);
         let scale = contact.force_cap() * share.weight / self.answer.unit;
-
         // The force is S (1, used).
         let used: [T; 3] = core::array::from_fn(|i| if radii[i] > zero { force[i + 1] / radii[i] } else { zero });
-
-        let (price, by_jacobian) = match active {
+        let (price, jacobian) = match active {
             None => (Vector::zeros(), None),
             Some((jacobian, active, delta)) => {
                 let (rank, basis) = jacobian.range(frame.torque_scale(), tolerance)?;
@@ -178,21 +196,13 @@ impl<T: Real> Refined<'_, T> {
                 (Vector::from(price), by_jacobian)
             }
         };
-
-        let ([o, t], n) = (contact.tangents(), contact.normal());
-        let in_space = n * force[0] + o * force[1] + t * force[2];
-        let (a, b) = (Vector::from([u[0], u[1], u[2]]), Vector::from([u[3], u[4], u[5]]));
-        let arm = (contact.position() - frame.reference()).map(|x| x / frame.torque_scale());
-        let rotation = (in_space.cross(&(a + b.cross(&arm))) + n.cross(&b) * force[3]) * scale;
-        let rest = g - price;
+        let rest: Vector<T, 4> = g - price;
         Ok(Some(ContactGradient {
-            position: in_space.cross(&b).map(|x| x / frame.torque_scale()) * scale,
-            rotation,
-            normal: rotation.cross(n),
             mu: (rest[1] * used[0] + rest[2] * used[1]) * scale,
             mus: rest[3] * used[2] * scale / frame.torque_scale(),
             force_cap: g.dot(&force) * share.weight / self.answer.unit,
-            jacobian: by_jacobian,
+            jacobian,
+            ..ContactGradient::of_motion(contact, frame, &force, &self.answer.direction, scale)
         }))
     }
 }

@@ -13,6 +13,7 @@
 //! violated by less than [`DEPENDENT`] times the sizes in question as satisfied: the same number, so that rounding cannot trade
 //! two equal constraints for each other for ever.
 
+use crate::math::dot;
 use heapless::Vec;
 
 /// Room for seven dimensions; eight numbers go through vector registers without a rest.
@@ -247,14 +248,6 @@ fn turn(c: f64, s: f64, p: &mut Wide, q: &mut Wide) {
     for j in 0..WIDTH {
         (p[j], q[j]) = (c * p[j] + s * q[j], c * q[j] - s * p[j]);
     }
-}
-
-pub fn dot(a: &Wide, b: &Wide) -> f64 {
-    let mut sum = 0.0;
-    for j in 0..WIDTH {
-        sum += a[j] * b[j];
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ fn fill(rows: &mut Vec<Row>, factor: &Factor, shift: &Wide, contacts: &[Linear],
     rows.clear();
     let mut add = |c: &Linear, extra: f64| {
         let mut normal = factor.forward(&c.normal);
-        let offset = c.offset + super::project::dot(&normal, shift);
+        let offset = c.offset + crate::math::dot(&normal, shift);
         normal[LAST] = extra;
         rows.push(Row::new(normal, offset));
     };

@@ -34,12 +34,12 @@
 
 use super::{Body, Depth, is_exact};
 use crate::bounds::{Bracket, Tolerance};
-use crate::math::{Accumulator, Vector, finite, norm};
+use crate::math::{Accumulator, Vector, finite, largest, norm};
 use crate::query::Options;
 use crate::query::answer::{Outcome, Stop};
 use crate::scalar::Real;
 use crate::support::failure::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
-use crate::support::shapes::{check_numbers, largest};
+use crate::support::range::check_numbers;
 use crate::support::{Failure, ShapeError, Support};
 use nalgebra::SMatrix;
 

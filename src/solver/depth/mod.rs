@@ -14,6 +14,7 @@
 use core::fmt;
 
 use crate::bounds::Axes;
+use crate::math::load::one_by_one;
 use crate::math::{Accumulator, Vector, finite, norm};
 use crate::qset::Ball;
 use crate::query::answer::{Answer, Outcome};
@@ -21,7 +22,7 @@ use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::failure::{NOT_FINITE, TOO_LARGE};
-use crate::support::{Failure, Measured, Support, Symmetry, is_worth_measuring, measuring_calls, one_by_one};
+use crate::support::{Failure, Measured, Support, Symmetry, is_worth_measuring, measuring_calls};
 use nalgebra::SMatrix;
 
 mod arcs;

@@ -2,9 +2,9 @@
 
 use super::linear::measured_extent;
 use super::{above, total};
-use crate::math::{Vector, finite};
+use crate::math::{Vector, finite, largest, unit};
 use crate::scalar::Real;
-use crate::support::shapes::{in_range, largest, length, rescaled, unit};
+use crate::support::range::{in_range, length, rescaled};
 use crate::support::{Failure, Support, Symmetry};
 
 /// The convex hull of the union of two sets, which geometry calls their join: the smallest convex set that contains both.

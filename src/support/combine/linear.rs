@@ -3,9 +3,10 @@
 use nalgebra::SMatrix;
 
 use super::{if_known, mapped, total, transposed};
-use crate::math::{Vector, norm};
+use crate::math::{Vector, norm, unit};
 use crate::scalar::Real;
-use crate::support::shapes::{ShapeError, above, check_numbers, in_range, length, rescaled, unit};
+use crate::support::range::{above, check_numbers, in_range, length, rescaled};
+use crate::support::shapes::ShapeError;
 use crate::support::{Failure, Support};
 
 /// A set under a linear map: x -> M x + t, for any finite matrix, singular ones included.

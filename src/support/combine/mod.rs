@@ -11,7 +11,7 @@
 
 use nalgebra::SMatrix;
 
-use super::shapes::above;
+use super::range::above;
 use super::{Failure, Support, Symmetry, Turning};
 use crate::math::Vector;
 use crate::scalar::Real;

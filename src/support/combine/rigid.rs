@@ -3,9 +3,10 @@
 use nalgebra::SMatrix;
 
 use super::{if_known, mapped, total, transposed};
-use crate::math::Vector;
+use crate::math::{Vector, magnitude, unit};
 use crate::scalar::Real;
-use crate::support::shapes::{ShapeError, above, check_numbers, length, magnitude, unit};
+use crate::support::range::{above, check_numbers, length};
+use crate::support::shapes::ShapeError;
 use crate::support::{Failure, Support, Symmetry};
 
 /// A set moved by x -> R x + t. The ball term stays: `R core + t + radius * ball`.

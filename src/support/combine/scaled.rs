@@ -3,7 +3,8 @@
 use super::{pair_error, pair_errors, total};
 use crate::math::Vector;
 use crate::scalar::Real;
-use crate::support::shapes::{ShapeError, above, check_sizes};
+use crate::support::range::{above, check_sizes};
+use crate::support::shapes::ShapeError;
 use crate::support::{Failure, Support, Symmetry};
 
 /// A set scaled about the origin by a factor >= 0, ball term included.

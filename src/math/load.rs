@@ -1,6 +1,6 @@
 //! Vectors on their way from one function to another.
 
-use crate::math::Vector;
+use super::Vector;
 use crate::scalar::Real;
 
 /// A number, loaded alone.
