@@ -55,6 +55,8 @@
 //! the chain is one of M too, and may lower the upper bound. No memory is needed but that of one chain. Directions without an arc, where M is smooth or has corners off the
 //! axis, need small sectors; the search gives up after [`CALLS`], and expansion goes on.
 
+mod sector;
+
 use crate::math::{Vector, norm, unit};
 use crate::plan::distance::nearest;
 use crate::polytope::simplex::{Simplex, Vertex};
@@ -62,9 +64,10 @@ use crate::query::Query;
 use crate::query::answer::{Answer, Plan, Stop};
 use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::solver::depth::meridian::{Section, across, trace};
+use crate::solver::depth::meridian::{across, trace};
 use crate::support::Failure;
 use heapless::Vec;
+use sector::Sector;
 
 /// Support calls that a search may take.
 const CALLS: u32 = 2048;
@@ -102,122 +105,60 @@ pub(crate) enum SectorsEnd<T: Real> {
     Failed,
 }
 
-/// Azimuths between two of them, or all.
-struct Sector<'s, T: Real> {
-    spin: &'s Spin<T>,
-    /// `offset` in the query's units.
-    offset: Vector<T, 3>,
-    ends: [Vector<T, 3>; 2],
-    /// Cosine of half the angle between them; 0: the sector is the whole circle.
-    cosine: T,
-    middle: Vector<T, 3>,
+/// The sectors that are not done, in their order around the axis: each begins where the one before it ends.
+struct Round<T: Real> {
+    /// Where the next one begins.
+    left: Vector<T, 3>,
+    /// Where they end, the next one last; none: the whole circle, which comes first.
+    right: Vec<Vector<T, 3>, { HALVINGS + 4 }>,
+    /// The lowest offset of those that are done.
+    lower: T,
 }
 
-impl<T: Real> Sector<'_, T> {
-    /// A lower bound of v.e over all azimuths e.
-    fn least(&self, v: &Vector<T, 3>) -> T {
-        let across = -norm(&(v - self.spin.axis * v.dot(&self.spin.axis)));
-        let [e, f] = &self.ends;
-        let m = v.dot(e).at_most(v.dot(f));
-        if !(self.cosine > T::zero()) {
-            across
-        } else if m >= T::zero() {
-            m
-        } else {
-            across.at_least(m / self.cosine)
-        }
+impl<T: Real> Round<T> {
+    /// The whole circle, from an azimuth.
+    fn new(start: Vector<T, 3>) -> Self {
+        Self { left: start, right: Vec::new(), lower: T::HUGE }
     }
 
-    /// The part of a point of M that belongs to K, and the part of C.
-    fn split(&self, vertex: &Vertex<T, 3>) -> [Vector<T, 3>; 2] {
-        let Vertex { point, witness } = vertex;
-        if self.spin.first {
-            [point - witness, *witness]
-        } else {
-            [witness + self.offset, point - witness - self.offset]
-        }
+    fn is_whole(&self) -> bool {
+        self.right.is_empty()
     }
 
-    /// The point of the half plane for a point of M that was found along `direction`: radius, height, and height downwards.
-    fn flatten(&self, vertex: &Vertex<T, 3>, direction: &Vector<T, 3>) -> Vector<T, 3> {
-        let axis = &self.spin.axis;
-        let [rest, turning] = self.split(vertex);
-        let (own, carried) = if self.spin.turns {
-            let height = turning.dot(axis);
-            (Vector::<T, 3>::new(norm(&(turning - axis * height)), height, -height), Vector::zeros())
-        } else {
-            // (One sum with the rest: what is far from both anchors cancels.)
-            (Vector::zeros(), turning)
-        };
-        let whole = rest + carried;
-        let (r, h) = (self.least(&whole), whole.dot(axis));
-        let fixed = Vector::<T, 3>::new(r, h, -h);
-        let best = match &self.spin.other {
-            Some(b) => {
-                let ring = self.ring(&rest, &carried, b, direction);
-                if self.score(&ring, direction) >= self.score(&fixed, direction) { ring } else { fixed }
+    /// The next sector.
+    fn sector<'s>(&self, spin: &'s Spin<T>, offset: Vector<T, 3>) -> Sector<'s, T> {
+        let left = self.left;
+        let (ends, cosine, middle) = match self.right.last() {
+            None => ([left, left], T::zero(), left),
+            Some(end) => {
+                let sum = left + end;
+                ([left, *end], norm(&sum) * T::of(0.5), unit(&sum))
             }
-            None => fixed,
         };
-        own + best
+        Sector { spin, offset, ends, cosine, middle }
     }
 
-    /// What a point is worth along a direction; with some weight on the radius, which counts for all others near the equator.
-    fn score(&self, place: &Vector<T, 3>, direction: &Vector<T, 3>) -> T {
-        let up = direction.dot(&self.spin.axis);
-        let height = if up >= T::zero() { up * place.y } else { -up * place.z };
-        (direction.dot(&self.middle) + T::of(0.0625)) * place.x + height
+    /// Instead of the whole circle its quarters, from an azimuth.
+    fn quarter(&mut self, axis: &Vector<T, 3>, start: Vector<T, 3>) {
+        self.left = start;
+        let side = unit(&axis.cross(&start));
+        for end in [start, -side, -start, side] {
+            let _ = self.right.push(end);
+        }
     }
 
-    /// The same for the circle of the point about the axis b, and what is added to each point of it.
-    fn ring(
-        &self,
-        point: &Vector<T, 3>,
-        carried: &Vector<T, 3>,
-        b: &Vector<T, 3>,
-        direction: &Vector<T, 3>,
-    ) -> Vector<T, 3> {
-        let axis = &self.spin.axis;
-        let from = point - self.offset;
-        let along = from.dot(b);
-        let radius = norm(&(from - b * along));
-        let center = self.offset + b * along + carried;
-        let (s, c) = (direction.dot(&self.middle).at_least(T::zero()), direction.dot(axis));
-        let cosine = axis.dot(b);
-        // t and g over the sector.
-        let ends = [self.least(b), -self.least(&-b)];
-        let [low, high] = ends.map(|t| s * t + c * cosine);
-        let nearest = if low > T::zero() { low } else { (-high).at_least(T::zero()) };
-        let square = (T::one() - nearest) * (T::one() + nearest);
-        // (Along b any point of the disc is as good as another: take the centre.)
-        let slack = T::count(8) * T::ROUNDOFF / square.at_least(T::TINY);
-        let k = if square > T::of(1e-4) { radius / square.root() * (T::one() - slack) } else { T::zero() };
-        let inward = (ends[0] * low).at_least(ends[1] * high);
-        let height = center.dot(axis);
-        // (The differences are off by some roundoffs of 1, and k may be large: near b.)
-        let rounding = k * (T::count(8) * T::ROUNDOFF);
-        Vector::<T, 3>::new(
-            self.least(&center) + k * (s - inward) - rounding,
-            height + k * (c - cosine * high) - rounding,
-            k * (cosine * low - c) - height - rounding,
-        )
+    /// Instead of the next sector its halves; false: too often.
+    fn halve(&mut self, middle: Vector<T, 3>) -> bool {
+        self.right.push(middle).is_ok()
     }
-}
 
-impl<T: Real> Section<T> for Sector<'_, T> {
-    fn frame(&self) -> (&Vector<T, 3>, &Vector<T, 3>) {
-        (&self.spin.axis, &self.middle)
-    }
-    fn ask(&self, query: &mut Query<'_, T, 3>, direction: &Vector<T, 3>) -> Result<Vertex<T, 3>, Failure> {
-        let (vertex, _) = query.support(direction)?;
-        Ok(Vertex { point: self.flatten(&vertex, direction), witness: vertex.witness })
-    }
-    fn place(&self, vertex: &Vertex<T, 3>, upper: bool) -> [T; 2] {
-        [vertex.point.x, if upper { vertex.point.y } else { vertex.point.z }]
-    }
-    fn judge(&self, query: &mut Query<'_, T, 3>, offset: T) -> Result<Option<Stop>, Failure> {
-        let enough = offset + query.bounds.radius >= query.level(T::zero(), T::zero());
-        Ok(enough.then_some(Stop::Met))
+    /// The next sector is done, with this offset. Was it the last one?
+    fn done(&mut self, offset: T) -> bool {
+        self.lower = self.lower.at_most(offset);
+        if let Some(end) = self.right.pop() {
+            self.left = end;
+        }
+        self.right.is_empty()
     }
 }
 
@@ -230,69 +171,48 @@ impl<T: Real> Solver<'_, T, 3> {
     ) -> Result<SectorsEnd<T>, Failure> {
         let axis = spin.axis;
         let limit = query.support_calls().saturating_add(CALLS);
-        let poles = [-axis, axis];
         let guess = query.first_direction();
         query.support(&guess)?;
-        let raw = [query.support(&poles[0])?.0, query.support(&poles[1])?.0];
+        let poles = [query.support(&-axis)?.0, query.support(&axis)?.0];
         if query.is_at_zero() {
             return Ok(SectorsEnd::Failed);
         }
-        let mut start = azimuth(query, &axis);
         let offset = spin.offset * query.scale();
-        let mut lower = T::HUGE;
-        let mut left = start;
-        // The right ends of the sectors that are not done; none: the whole circle comes first.
-        let mut right = Vec::<Vector<T, 3>, { HALVINGS + 4 }>::new();
+        let mut round = Round::new(azimuth(query, &axis));
         loop {
-            let (ends, cosine, middle) = match right.last() {
-                None => ([start, start], T::zero(), start),
-                Some(end) => {
-                    let sum = left + end;
-                    ([left, *end], norm(&sum) * T::of(0.5), unit(&sum))
-                }
-            };
-            let sector = Sector { spin, offset, ends, cosine, middle };
-            let [lowest, highest] = [0, 1].map(|i| Vertex { point: sector.flatten(&raw[i], &poles[i]), ..raw[i] });
-            let farthest = sector.ask(query, &middle)?;
-            let least = sector.place(&lowest, false)[1].at_most(sector.place(&highest, true)[1]);
-            if sector.judge(query, least)?.is_none() {
-                // The axis itself is (nearly) the best direction: no arc around it.
-                return Ok(SectorsEnd::Failed);
-            }
-            let traced = trace(&mut self.polytope, query, &sector, [lowest, farthest, highest])?;
-            match traced {
-                Some(traced) if traced.stop == Stop::Met => {
-                    lower = lower.at_most(traced.offset);
-                    left = ends[1];
-                    right.pop();
-                    if right.is_empty() {
-                        break;
-                    }
-                }
+            let sector = round.sector(spin, offset);
+            let Some(first) = sector.chain(query, &poles)? else { return Ok(SectorsEnd::Failed) };
+            let is_last = match trace(&mut self.polytope, query, &sector, first)? {
+                Some(traced) if traced.stop == Stop::Met => round.done(traced.offset),
                 Some(traced) if !matches!(traced.stop, Stop::Rounding | Stop::Capacity) => {
                     return Ok(SectorsEnd::Stopped(traced.stop));
                 }
-                _ if right.is_empty() => {
+                _ if round.is_whole() => {
                     turn_down(query, &axis)?;
-                    start = azimuth(query, &axis);
-                    left = start;
-                    let side = unit(&axis.cross(&start));
-                    for end in [start, -side, -start, side] {
-                        let _ = right.push(end);
-                    }
+                    round.quarter(&axis, azimuth(query, &axis));
+                    false
                 }
-                _ => {
-                    if query.support_calls() > limit || right.push(middle).is_err() {
-                        return Ok(SectorsEnd::Failed);
-                    }
-                }
+                _ if query.support_calls() > limit || !round.halve(sector.middle) => return Ok(SectorsEnd::Failed),
+                _ => false,
+            };
+            if is_last {
+                return self.conclude_sectors(query, &axis, round.lower);
             }
         }
+    }
+
+    /// The answer once all sectors are done, `lower` the lowest of their offsets.
+    fn conclude_sectors(
+        &mut self,
+        query: &mut Query<'_, T, 3>,
+        axis: &Vector<T, 3>,
+        lower: T,
+    ) -> Result<SectorsEnd<T>, Failure> {
         if !query.verify()? {
             return Ok(SectorsEnd::Failed);
         }
         let Some(lower) = query.lower_from_offset(lower, query.margin()) else { return Ok(SectorsEnd::Failed) };
-        let witness = witness(query, &axis)?;
+        let witness = witness(query, axis)?;
         // Witnesses that are short of the plane by more than the tolerance are none: expansion finds better ones.
         let foot = query.foot().unwrap_or_else(Vector::zeros);
         if !(query.best.direction.dot(&(foot - witness.point())) <= query.slack()) {
