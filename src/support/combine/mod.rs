@@ -13,7 +13,7 @@ use nalgebra::SMatrix;
 
 use super::range::above;
 use super::{Failure, Support, Symmetry, Turning};
-use crate::math::Vector;
+use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
 use crate::solver::depth::half_space::Unbounded;
 
@@ -136,7 +136,46 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn errors(&self) -> Vector<T, N> {
         (**self).errors()
     }
+    fn support_in_two_words(&self, u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
+        (**self).support_in_two_words(u)
+    }
     fn extents(&self) -> Vector<T, N> {
         (**self).extents()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::support::{Ellipsoid, HalfSpace, Join, Points};
+
+    /// All that a set says, but for its size.
+    fn said(set: &dyn Support<f64, 3>) -> impl PartialEq + core::fmt::Debug {
+        let u = Vector::from([1.0, -2.0, 0.5]);
+        let points = (set.support(&u), set.support_with_witness(&u), set.exhaustive(&u));
+        let two = set.support_in_two_words(&TwoWords::from(u));
+        let lengths = [set.radius(), set.rolling_radius(), set.extent(), set.error()];
+        let kinds = (set.has_shortcuts(), set.symmetry(), set.unbounded().is_some(), set.turning().is_some());
+        let mirrors = ([0, 1, 2, 3, 4, 5, 6, 7].map(|signs| set.mirrored(signs)), set.contains_origin());
+        (points, two, lengths, kinds, mirrors, set.center(), [set.errors(), set.extents()])
+    }
+
+    #[test]
+    fn a_reference_says_what_the_set_says() {
+        let ellipsoid = Ellipsoid::new(Vector::from([1.0, 1.0, 2.0])).unwrap();
+        let far = [[1e6, 1e6, 0.0], [1e6 + 1.0, 1e6, 0.0], [1e6, 1e6 + 1.0, 1.0]];
+        let points = Points::new(&far).unwrap();
+        let ground = HalfSpace::new(Vector::from([0.0, 0.0, 1.0]), 1.0).unwrap();
+        let difference = Difference::new(ellipsoid, points);
+        let sets: [[&dyn Support<f64, 3>; 2]; 5] = [
+            [&ellipsoid, &&ellipsoid],
+            [&points, &&points],
+            [&ground, &&ground],
+            [&difference, &&difference],
+            [&Join::new(points, points), &&Join::new(points, points)],
+        ];
+        for [set, reference] in sets {
+            assert_eq!(said(set), said(reference));
+        }
     }
 }
