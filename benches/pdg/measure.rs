@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
-use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver, Effort, Pair, Walk};
+use qdist::mesh::certificate::Effort;
+use qdist::mesh::{ContactSamples, DepthOptions, DepthSolver, Pair, Walk};
 
 use crate::scenes::Scenes;
 use qdist_cli::mesh::answer::{self, Row};

@@ -119,7 +119,7 @@ mod frame;
 mod gradient;
 mod hand;
 mod jacobian;
-pub mod linearized;
+pub(crate) mod linearized;
 pub(crate) mod numbers;
 mod primitive;
 mod span;

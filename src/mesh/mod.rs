@@ -70,7 +70,7 @@
 
 mod bvh;
 pub mod certificate;
-pub mod check;
+mod check;
 mod cones;
 mod crossing;
 mod depth;
@@ -80,15 +80,15 @@ pub mod metric;
 mod model;
 pub mod optimize;
 mod pose;
-pub mod proximity;
+mod proximity;
 mod surface;
-pub mod topology;
+mod topology;
 mod triangle;
 
 pub use check::Report;
 pub use depth::{
-    Budget, ContactSamples, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Outcome, Progress,
-    SamplesError, Walk, Watch,
+    Budget, ContactSamples, DepthOptions, DepthSolver, DepthTracker, MeshDepth, Outcome, Progress, SamplesError, Walk,
+    Watch,
 };
 pub use model::{Model, ModelError};
 pub use proximity::{Contact, Counters, Distance, Impact, Pair, Screw, Stop};

@@ -139,6 +139,19 @@ fn no_folder_has_a_circle() {
     assert!(circles.is_empty(), "{circles:#?}");
 }
 
+/// What a public module holds is found there and nowhere else.
+#[test]
+fn everything_has_one_path() {
+    for file in files(Path::new("src")) {
+        let lines = code(&file);
+        for module in lines.iter().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')) {
+            let prefix = format!("pub use {module}::");
+            let again = lines.iter().find(|line| line.strip_prefix(&prefix).is_some_and(|item| !item.contains("::")));
+            assert!(again.is_none(), "{}: {again:?} of a public module", file.display());
+        }
+    }
+}
+
 /// Lines of a file without its tests, and of a function.
 const LONGEST_FILE: usize = 400;
 const LONGEST_FUNCTION: usize = 60;

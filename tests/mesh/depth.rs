@@ -6,9 +6,9 @@ use common::dice::Dice;
 use common::shared;
 use mesh_common::*;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use qdist::mesh::certificate::SolidError;
+use qdist::mesh::certificate::{Effort, SolidError};
 use qdist::mesh::metric::{Certificate, Metric};
-use qdist::mesh::{DepthOptions, DepthSolver, Effort, MeshDepth, Model, Outcome, Pair, Progress, Walk};
+use qdist::mesh::{DepthOptions, DepthSolver, MeshDepth, Model, Outcome, Pair, Progress, Walk};
 use std::f64::consts::FRAC_PI_4;
 
 fn model(shape: &Shape) -> Model {

@@ -14,7 +14,8 @@ use super::model::qdist_mesh_mass;
 use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
 use core::ffi::{c_char, c_void};
 use core::ptr::null_mut;
-use qdist::mesh::{DepthOptions, Effort, MeshDepth, Outcome, Progress};
+use qdist::mesh::certificate::Effort;
+use qdist::mesh::{DepthOptions, MeshDepth, Outcome, Progress};
 use qdist::nalgebra::Isometry3;
 
 /// How much is done for a depth?

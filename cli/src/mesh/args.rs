@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum, value_parser};
-use qdist::mesh::Effort;
+use qdist::mesh::certificate::Effort;
 use qdist::nalgebra::Isometry3;
 
 use crate::mesh::input::{self, Kind};

@@ -15,11 +15,9 @@
 //! The first find is printed with its case, and the exit code is 1.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
-use qdist::mesh::certificate::BuildOptions;
+use qdist::mesh::certificate::{BuildOptions, Effort};
 use qdist::mesh::metric::Metric;
-use qdist::mesh::{
-    Budget, DepthOptions, DepthSolver, DepthTracker, Effort, MeshDepth, Model, Outcome, Pair, Screw, Walk,
-};
+use qdist::mesh::{Budget, DepthOptions, DepthSolver, DepthTracker, MeshDepth, Model, Outcome, Pair, Screw, Walk};
 use qdist_fuzz::common::dice::Dice;
 use qdist_fuzz::mesh_common::{self, Shape, cuboid, icosphere, l_shape, random_pose, slot, tetrahedron, torus};
 use std::sync::Mutex;

@@ -1,6 +1,6 @@
 //! What a tick of the tracker may cost.
 
-use super::Effort;
+use crate::mesh::certificate::Effort;
 
 /// What a tick may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]

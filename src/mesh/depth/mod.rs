@@ -51,8 +51,7 @@ mod tracker;
 mod translation;
 mod walk;
 
-use super::certificate::Certifier;
-pub use super::certificate::Effort;
+use super::certificate::{Certifier, Effort};
 use super::metric::Metric;
 use super::optimize::{Constraint, StepMemory};
 use super::{Contact, Counters, Distance, Model, Pair};

@@ -13,9 +13,9 @@
 //!
 //! So quick queries stay quick, and time goes where the answer is in doubt.
 
-use super::Effort;
 use super::seeds::rays;
 use crate::mesh::Model;
+use crate::mesh::certificate::Effort;
 use crate::mesh::metric::Certificate;
 
 /// What a query of an effort does, for a pair of models and a kind of metric.
