@@ -22,7 +22,7 @@
 
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
-pub use crate::solver::depth::Turning;
+pub use crate::solver::depth::arcs::Turning;
 pub use crate::solver::depth::half_space::HalfSpace;
 use crate::solver::depth::half_space::Unbounded;
 

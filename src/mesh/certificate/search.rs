@@ -10,7 +10,7 @@ use super::sigma::{Lever, Separation, selected};
 use super::{Effort, Pieces};
 use crate::query::Options;
 use crate::scalar::Real;
-use crate::solver::depth::Body;
+use crate::solver::depth::body::Body;
 use crate::solver::workspace::Workspace;
 use crate::support::Points;
 use nalgebra::{Isometry3, Matrix3, Vector3};

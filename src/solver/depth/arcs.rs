@@ -10,7 +10,11 @@
 
 use core::fmt;
 
-use super::{AXIS_ROUNDOFFS, Axis, Body, Depth, Pair, skew};
+use super::answer::Depth;
+use super::axis::{AXIS_ROUNDOFFS, Axis};
+use super::body::{Body, skew};
+use super::pair::Pair;
+use super::sectors::{SectorsEnd, Spin};
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
 use crate::qset::Ball;
@@ -18,7 +22,6 @@ use crate::query::Options;
 use crate::query::answer::{Answer, Outcome};
 use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::solver::depth::sectors::{SectorsEnd, Spin};
 use crate::support::Symmetry;
 
 /// Two axes are as good as one if what they are off is this share of the relative tolerance.

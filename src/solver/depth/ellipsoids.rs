@@ -19,7 +19,9 @@
 //! |w| is 1 up to 3 s; the balls that were split off stay balls, which is worth 3 s. With E the sum of both bodies' extents all that is at most (1.01 e +
 //! 16 s) E, once for u and once for the axes that are asked in its place. The roundoffs are those of measuring it.
 
-use super::{Body, Depth, Pair, SKEW_ROUNDOFFS, skew};
+use super::answer::Depth;
+use super::body::{Body, SKEW_ROUNDOFFS, skew};
+use super::pair::Pair;
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
 use crate::polytope::simplex::Simplex;

@@ -32,7 +32,8 @@
 //! bodies are known up to rounding: where that does not tell, the lower bound is of the case that they are opposite, and there
 //! is no upper bound.
 
-use super::{Body, Depth, is_exact};
+use super::answer::Depth;
+use super::body::{Body, is_exact};
 use crate::bounds::{Bracket, Tolerance};
 use crate::math::{Accumulator, Vector, finite, largest, norm};
 use crate::query::Options;

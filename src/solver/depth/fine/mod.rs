@@ -62,7 +62,8 @@ mod level;
 mod nearest;
 mod recorder;
 
-use super::{Body, Pair};
+use super::body::Body;
+use super::pair::Pair;
 use crate::bounds::Bracket;
 use crate::math::{TwoWords, Vector, unit};
 use crate::polytope::simplex::{Edges, MAX_CORNERS, Simplex, Vertex};

@@ -4,7 +4,8 @@ use core::cell::{Cell, RefCell};
 
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
-use crate::solver::depth::{Anchor, Body, Pair, skew};
+use crate::solver::depth::body::{Anchor, Body, skew};
+use crate::solver::depth::pair::Pair;
 use crate::support::failure::NOT_FINITE;
 use crate::support::{Failure, Support};
 use heapless::Vec;
