@@ -43,6 +43,9 @@ pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     let squared = v.dot(v);
     if squared > T::SAFE_SQUARE && squared <= T::HUGE {
         v * (T::one() / squared.root())
+    } else if N > 3 {
+        // (A copy of a long vector would cost every caller its place on the stack.)
+        scaled_unit(v)
     } else {
         one_by_one(&far_unit(*v))
     }
@@ -58,9 +61,14 @@ pub(crate) fn dot<T: Real, const K: usize>(x: &[T; K], y: &[T; K]) -> T {
 #[cold]
 #[inline(never)]
 fn far_unit<T: Real, const N: usize>(v: Vector<T, N>) -> Vector<T, N> {
-    let largest = largest(&v);
+    scaled_unit(&v)
+}
+
+#[inline(always)]
+fn scaled_unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
+    let largest = largest(v);
     if !(largest > T::zero()) {
-        return v;
+        return *v;
     }
     let scaled = v.map(|x| x / largest);
     scaled * (T::one() / scaled.dot(&scaled).root())
