@@ -1,23 +1,26 @@
-//! Does the grasp hold against any wrench? Yes or no, with a proof, or neither.
+//! Force closure: does the grasp hold against any wrench? Yes or no, with a certificate, or neither.
 //!
 //! A grasp is *force-closed* when contact forces within friction exert every wrench (paper, Section II), that is, when the origin lies
-//! in the interior of W. Both answers have a certificate. Neither norm nor force caps matter, but for caps of 0; nor does the torque scale.
+//! in the interior of its wrench set W, with the support function h_W. Neither norm nor force caps matter, but for caps of 0; nor does the torque scale.
 //!
-//! * *Closed*: a ball in W. It is there with all rounding taken into account: d > 0, for the exact numbers of the contacts.
-//! * *Open*: a direction u with h_W(u) = 0, along which no contact pushes. Numbers of a floating-point format have such a direction
-//!   by luck only: the line between two fingertips, say, is rounded. So open means that h_W(u), as it is computed, is no more than half of what its
-//!   own rounding may be, E(u) = sum of |u_i| e_i with the e_i of [`Support::errors`]: some 20 to 60 roundoffs of the wrenches that the terms of h_W(u) are made
-//!   of, row by row. Numbers of contacts that differ by as much make an open grasp, and no bracket of d in this format tells it from 0.
-//! * *Undecided*: d is too small for the one, too large for the other, or the query was cut short. Of sizes between 1/2 and about 5
-//!   times E(u), a grasp may be that.
+//! * *Closed*: a ball around the origin lies in W, all rounding taken into account: d > 0, for the exact numbers of the contacts.
+//! * *Open*: there is a direction u with h_W(u) = 0: no contact pushes along it. Floating-point numbers have such a direction
+//!   by luck only: the line between two fingertips, say, is rounded. So open means that h_W(u), as it is computed, is no more than half of the bound
+//!   E(u) = Σ |u_i| e_i of its own rounding, with the e_i of [`Support::errors`]: some 20 to 60 roundoffs of the wrenches that the terms of h_W(u) are made
+//!   of, row by row. Contacts whose numbers differ by as much make an open grasp, and no bracket of d in this format tells d from 0.
+//! * *Undecided*: h_W(u) is too small for the one and too large for the other, between 1/2 and about 5 times E(u), or the query was cut short.
+//!
+//! # How it is decided
+//!
+//! By the query of d, in other units and with a threshold.
 //!
 //! **Coordinates.** A linear map of W leaves closure as it is. The query divides each coordinate by a power of two near its error e_i: moments
 //! of a thousand or a thousandth of the forces' size then count like forces, and the small ones are not drowned in the rounding of the
 //! large ones.
 //!
-//! **Thresholds.** A query with a threshold of some margins ends at the first direction that is a candidate for open, or the first ball above it. The
-//! candidate is judged by its height, summed in twice the precision. If it is none, the threshold is lowered; at last there is none, and rounding
-//! ends the query.
+//! **Thresholds.** A query whose threshold is a few times the rounding ends at the first ball in W above it, or at the first direction below it: a candidate for
+//! open, which is judged by h_W(u), summed in twice the precision. If it fails, the next query has a lower threshold; the last has next to none, and rounding
+//! ends it.
 
 use crate::math::{Accumulator, Vector, norm, unit};
 use crate::qset::Ball;

@@ -232,6 +232,9 @@ fn size<T: Real, const N: usize>(q: &dyn UnitSet<T, N>) -> Result<T, Failure> {
 }
 
 /// A's affine hull, if it contains the origin; its basis are coordinate axes where they span it. Adds its support calls to `calls`.
+///
+/// (Never inlined: its query and its simplex would lie on the stack beneath all of the query in the subspace.)
+#[inline(never)]
 fn span<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn UnitSet<T, N>,
@@ -289,6 +292,8 @@ fn span_seen<T: Real, const N: usize>(
 }
 
 /// On a line, two directions are all there are. `None`, with its support calls added to `calls`, when that does not decide.
+/// (Never inlined, for the same reason as [`span`].)
+#[inline(never)]
 fn solve_line<T: Real, const N: usize>(
     a: &dyn Support<T, N>,
     q: &dyn UnitSet<T, N>,

@@ -4,23 +4,31 @@
 //! change of d is that of the objective at both as they are (the envelope theorem; Danskin, 1967):
 //!
 //! ```text
-//! d' = Σ_i λ_i u . (G_i f_i)' / h_Q(u)                                    f_i = the force of contact i at full load
+//! d' = Σ_i λ_i u . (G_i cap_i f_i)' / h_Q(u)
 //! ```
 //!
-//! where f_i' is that of an optimal f in its set as the set changes. With g = G_i^T u, the set { f = S (1, x), |x| <= 1, f in range(J) }
-//! and the Lagrangian `g . f - y . (f - J c)` of its maximum:
+//! with the weakest direction u, the share λ_i of its full load that contact i carries there, its force f_i for a normal force of 1, as (normal, two
+//! tangential, spin moment over L), its cap, and the map G_i of such forces to wrenches. L is the torque scale.
+//!
+//! # One contact
+//!
+//! f maximises h = g . f, where g = G^T u, over the contact's forces: f = S (1, x) with |x| <= 1, S = diag(1, mu, mu, mus/L), and, if joints of the Jacobian J
+//! make them, f = J c for some c. f' is how that optimum moves as the set changes. The Lagrangian `g . f - y . (f - J c)` gives, at cap 1,
 //!
 //! ```text
-//! dh/dp = F x b / L                                    (a, b) = u, F = the force in space, r = (p - reference) / L
+//! dh/dp = F x b / L                                    (a, b) = u: force and moment; F = the force in space, r = (p - reference) / L
 //! dh/dω = F x (a + b x r) + f4 n x b                   n, o, t turn together: n' = ω x n, ...
 //! dh/dmu = (g - y)_{2,3} . x_{1,2}     dh/dmus = (g - y)_4 x_3 / L     dh/dcap = g . f
 //! dh/dJ = y c^T,   c = J^+ f                           (the spin row times L)
 //! ```
 //!
-//! y is orthogonal to range(J), the price of staying in it: S (g - y) is β x along the friction, so that K^T η = S g - β x
-//! gives y = B η, with K = B^T S as in [`ActiveForces`] and β = |disc^T g| / Delta. A passive contact has y = 0.
+//! The multiplier y is the price of staying in range(J), and orthogonal to it: y = B η, with the columns of B an orthonormal basis of the complement. A passive
+//! contact has y = 0. At the maximum, the last three entries of S (g - y) are β x, where β is the multiplier of |x| <= 1; so η solves K^T η = (S g)_{2,3,4} - β x, where
+//! K is what B^T S has for x. In terms of [`ActiveForces`], whose set is { center + disc z : |z| <= 1 }: β = |disc^T g| / Delta.
 //!
-//! The active set changes smoothly with J only where its rank is min(4, q), so that no small change of J raises it, and K
+//! # Where there is none
+//!
+//! The active set changes smoothly with a J of q joints only where its rank is min(4, q), so that no small change of J raises it, and K
 //! has full row rank. Where Delta is 0 the disc opens like a square root, and nothing but d itself is known.
 
 mod newton;

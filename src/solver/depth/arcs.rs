@@ -1,8 +1,14 @@
-//! Depth where a body turns about an axis: minimisers may lie on an arc around it (module `sectors`).
+//! Depth of a body of revolution and another body: the directions that minimise h_M may be an arc around its axis (module `sectors`), which expansion would have
+//! to tile with thousands of facets.
 //!
-//! Pairs are expanded as any, but only to [`PATIENCE`] vertices: where the minimiser is not on an arc, that is enough. Then the sectors around each axis
-//! are searched, then those around an edge of the other body that runs nearly along it, and if that does not end the query either (a smooth body,
-//! a tolerance near roundoff), expansion has all the memory there is. Two bodies of revolution whose axes agree up to a small share of the tolerance are measured in a plane before (module `meridian`), at that charge.
+//! In this order, until one ends the query:
+//!
+//! 1. Two bodies of revolution that are coaxial up to [`NEARLY_COAXIAL`] of the tolerance are measured in one plane through the axis (module
+//!    `meridian`), as if they were coaxial; the bracket is wider by what they are not.
+//! 2. Expansion as for any pair, but only to [`PATIENCE`] vertices: enough where the minimiser is not on an arc.
+//! 3. The sectors around each body's axis.
+//! 4. The sectors around an edge of the other body that runs nearly along the axis.
+//! 5. Expansion with all the memory there is: smooth bodies, tolerances near roundoff.
 //!
 //! The rounding of the sectors' points, beside that of M's own: axes and azimuths are unit and orthogonal to 4 u, a point is split in two and put together again
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
@@ -39,7 +45,8 @@ const SHORTEST: f64 = 1e-3;
 /// Cosine of the angle between axis and edge beyond which minimisers lie on no arc that expansion could not tile.
 const ALIGNED: f64 = 0.75;
 
-/// For a body of revolution or an ellipsoid: how depth is found with one. A program that has no such body does not contain it.
+/// How depth is found for a body of revolution, or an ellipsoid: what such a set hands to the solver ([`Support::turning`](crate::support::Support::turning)).
+/// The search is reached through it alone, so that a program without such a set does not contain it.
 #[derive(Clone, Copy)]
 pub struct Turning<T: Real> {
     pub(super) depth: Route<T>,
