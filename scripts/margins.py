@@ -51,7 +51,7 @@ query: certainly outside | query/asking.rs | height + @self.margin_along(directi
 query: known floor that is no normal number | query/floor.rs | if @lower >= T::TINY@ && | lower > T::zero()
 query: subnormal bounds | query/mod.rs | { @value + outward * T::TINY@ } | value
 query: Q without extent | query/asking.rs | if @unit <= self.unit_error@ | unit <= T::zero()
-query: keys, error of Q | query/sets.rs | self.unit(normal)? + @self.unit_error@ | T::zero()
+query: keys, error of Q | query/sets.rs | self.value_of_q(normal)? + @self.unit_error@ | T::zero()
 
 expansion: from the key to the offset | plan/expansion.rs | - @whole.abs() * (T::count(5) * T::ROUNDOFF)@ | T::zero()
 expansion: thin first simplex | plan/expansion.rs | let thin = @self.resolution_along(&direction) + margin + margin@ | T::zero()

@@ -13,7 +13,7 @@ pub trait Contribution<T: Real>: Support<T, 6> {
     ///
     /// # Errors
     /// Those of the support function.
-    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+    fn support_above(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         let point = self.support(u)?;
         let value = point.dot(u);
         Ok((value > floor).then_some((value, point)))

@@ -177,7 +177,7 @@ impl<T: Real> Support<T, 6> for Primitive<T> {
 }
 
 impl<T: Real> Contribution<T> for Primitive<T> {
-    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+    fn support_above(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         if self.is_empty() {
             return Ok(None);
         }

@@ -104,7 +104,7 @@ impl<'a, T: Real, C: Contribution<T>> WrenchSet<'a, T, C> {
         let u = near_unit(u);
         let mut best = (T::zero(), None);
         for (index, contribution) in self.contributions.iter().enumerate() {
-            match (contribution.reach(&u, best.0)?, self.norm) {
+            match (contribution.support_above(&u, best.0)?, self.norm) {
                 (None, _) => {}
                 (Some((_, point)), Norm::LInf) => each(index, &point),
                 (Some((value, point)), Norm::L1) => best = (value, Some((index, point))),

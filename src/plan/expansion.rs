@@ -112,7 +112,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     /// Does the bracket, with this lowest key, end the query? First without the margins, which for a general Q cost a
     /// pass over the facets.
     fn verdict(&self, query: &Query<'_, T, N>, key: T) -> Option<Stop> {
-        if query.is_open(key) {
+        if query.is_gap_wide(key) {
             return None;
         }
         let upper = query.upper();

@@ -60,8 +60,8 @@ impl fmt::Display for Outcome {
 }
 
 impl Outcome {
-    /// Did rounding end the run?
-    pub(crate) fn is_open(self) -> bool {
+    /// Did rounding, or the memory, end the run before the bracket was as narrow as it was to be?
+    pub(crate) fn is_inconclusive(self) -> bool {
         matches!(self, Outcome::Precision | Outcome::Degenerate | Outcome::Touching | Outcome::Capacity)
     }
 }

@@ -100,7 +100,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             return Ok(());
         } else {
             self.work.add(self.work.unit());
-            let unit = self.unit(direction)?;
+            let unit = self.value_of_q(direction)?;
             self.best.widest = self.best.widest.at_least(unit);
             if unit <= self.unit_error {
                 return Ok(()); // Q has no extent that way: it bounds nothing.

@@ -159,7 +159,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
     /// A quick no to [`verdict`](Query::verdict): the gap between lowest key and best quotient is too wide even
     /// without margins.
     #[inline]
-    pub fn is_open(&self, key: T) -> bool {
+    pub fn is_gap_wide(&self, key: T) -> bool {
         let gap = Bracket { lower: self.floored(key), upper: self.best.ratio };
         self.options.threshold.is_none() && !self.tolerance(Self::sharpness()).met(&gap)
     }

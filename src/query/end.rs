@@ -58,7 +58,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
         if self.best.apart {
             return Ok(height);
         }
-        let unit = self.unit(direction)?;
+        let unit = self.value_of_q(direction)?;
         Ok(if unit > self.unit_error { (height + self.bounds.radius) / unit } else { T::HUGE })
     }
 

@@ -7,7 +7,8 @@ use crate::support::Failure;
 use crate::support::failure::NOT_FINITE;
 
 impl<T: Real, const N: usize> Query<'_, T, N> {
-    pub(super) fn unit(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
+    /// h_Q along a direction.
+    pub(super) fn value_of_q(&self, direction: &Vector<T, N>) -> Result<T, Failure> {
         match self.ball {
             Some(radius) => Ok(radius),
             None => {
@@ -73,7 +74,7 @@ impl<T: Real, const N: usize> Query<'_, T, N> {
             Some(_) => return Ok(top * self.per_ball),
             None => {
                 self.work.add(Work::<N>::FACET + self.work.unit());
-                self.unit(normal)? + self.unit_error
+                self.value_of_q(normal)? + self.unit_error
             }
         };
         Ok(if bottom > T::zero() { top / bottom } else { T::HUGE })

@@ -174,7 +174,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         let first = query.first_direction();
         // With a ball term, shallow contact leaves the cores apart: then the distance is the whole answer.
-        let mut floor = None;
+        let mut so_far = None;
         if query.bounds.radius > T::zero() {
             let (stop, near) = self.approach(query, &first)?;
             let bracket =
@@ -182,11 +182,11 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             if stop != Stop::Rounding || query.is_met(&bracket) || query.is_tight(&bracket) {
                 return Ok(Opening { end: Err(stop), near: Some(near) });
             }
-            floor = Some(near);
+            so_far = Some(near);
         }
         let stop = self.polytope.start(query, &first)?;
         let end = plan(&mut self.polytope, query, stop)?;
-        Ok(Opening { end: Ok(end), near: floor })
+        Ok(Opening { end: Ok(end), near: so_far })
     }
 
     /// Cone by cone, after the polytope has outgrown the memory.
@@ -194,14 +194,14 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         query: &mut Query<'_, T, N>,
         expanded: Expanded<T>,
-        floor: Option<&Nearest<T, N>>,
+        so_far: Option<&Nearest<T, N>>,
     ) -> Answer<T, N> {
         // What the search stores are images of A's points in its cones. Until it has a bound, those stored before are what is known.
         let known = self.polytope.lower(query, expanded.key).is_some();
-        let stored = if known { None } else { self.nearest_stored(query, floor) };
-        let floor = stored.as_ref().or(floor);
+        let stored = if known { None } else { self.nearest_stored(query, so_far) };
+        let so_far = stored.as_ref().or(so_far);
         let Some(found) = self.polytope.conewise(query, &expanded) else {
-            return self.conclude(query, expanded, floor);
+            return self.conclude(query, expanded, so_far);
         };
         query.plan = Plan::Cones;
         if found.stop != Stop::Outside && found.lower > -T::HUGE {
@@ -210,8 +210,8 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         }
         self.polytope.forget();
         match found.stop {
-            Stop::Failed(_) => self.lower_by_vertices(query, found.stop, floor),
-            stop => self.conclude(query, Expanded { stop, key: -T::HUGE, facet: None }, floor),
+            Stop::Failed(_) => self.lower_by_vertices(query, found.stop, so_far),
+            stop => self.conclude(query, Expanded { stop, key: -T::HUGE, facet: None }, so_far),
         }
     }
 
@@ -259,7 +259,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &mut self,
         query: &mut Query<'_, T, N>,
         expanded: Expanded<T>,
-        floor: Option<&Nearest<T, N>>,
+        so_far: Option<&Nearest<T, N>>,
     ) -> Answer<T, N> {
         let Expanded { stop, key, facet } = expanded;
         let apart = query.upper() < T::zero();
@@ -287,7 +287,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
             match self.approach(query, &first) {
                 // A walk that was cut short may know less than the vertices stored before it.
                 Ok((stop @ (Stop::Iterations | Stop::Interrupted), near)) => {
-                    let near = floor.into_iter().fold(&near, |a, b| if b.distance < a.distance { b } else { a });
+                    let near = so_far.into_iter().fold(&near, |a, b| if b.distance < a.distance { b } else { a });
                     return self.lower_by_vertices(query, stop, Some(near));
                 }
                 Ok((end, near)) => {
@@ -298,7 +298,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
                 Err(failure) => return self.give_up(query, failure),
             }
         }
-        self.lower_by_vertices(query, stop, floor)
+        self.lower_by_vertices(query, stop, so_far)
     }
 
     /// An answer whose lower bound comes from points that are known, without asking A again: the stored vertices, or
@@ -308,10 +308,10 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         &self,
         query: &mut Query<'_, T, N>,
         stop: Stop,
-        floor: Option<&Nearest<T, N>>,
+        so_far: Option<&Nearest<T, N>>,
     ) -> Answer<T, N> {
-        let stored = self.nearest_stored(query, floor);
-        match stored.as_ref().or(floor) {
+        let stored = self.nearest_stored(query, so_far);
+        match stored.as_ref().or(so_far) {
             Some(near) => {
                 let lower = query.lower_from_simplex(&near.simplex, near.distance);
                 self.report(query, stop, lower, near.simplex.clone())

@@ -26,7 +26,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         options: &Options<'_, T, N>,
         run: impl FnOnce(&mut Self, &dyn Support<T, N>, Options<T, N>, &Vector<T, N>, bool) -> Option<Answer<T, N>>,
     ) -> Answer<T, N> {
-        if !answer.outcome.is_open() {
+        if !answer.outcome.is_inconclusive() {
             return answer;
         }
         let Some(options) = options.after(answer.iterations) else { return answer };

@@ -69,10 +69,10 @@ impl<T: Real> Support<T, 6> for Part<T> {
 }
 
 impl<T: Real> Contribution<T> for Part<T> {
-    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+    fn support_above(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         match self {
-            Self::Contact(primitive) => primitive.reach(u, floor),
-            Self::Finger(finger) => finger.reach(u, floor),
+            Self::Contact(primitive) => primitive.support_above(u, floor),
+            Self::Finger(finger) => finger.support_above(u, floor),
         }
     }
     fn is_mirror_of(&self, other: &Self, signs: &Vector<T, 6>) -> bool {

@@ -210,7 +210,7 @@ impl<T: Real> Support<T, 6> for Finger<T> {
 }
 
 impl<T: Real> Contribution<T> for Finger<T> {
-    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+    fn support_above(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         let point = self.wrench(&self.farthest(u, floor.at_least(T::zero()))?);
         let value = point.dot(u);
         Ok((value > floor).then_some((value, point)))

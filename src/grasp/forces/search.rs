@@ -203,7 +203,7 @@ impl<'a, 'b, T: Real, C: Contribution<T>> ForceSearch<'a, 'b, T, C> {
         for contribution in self.set.contributions() {
             // |u| is 1 up to rounding.
             let error = contribution.error() * T::of(1.0001);
-            if let Some((value, _)) = contribution.reach(&u, -(error + error))? {
+            if let Some((value, _)) = contribution.support_above(&u, -(error + error))? {
                 let value = (value + error).at_least(zero);
                 height = if self.set.norm() == Norm::L1 { height.at_least(value) } else { height + value };
             }

@@ -137,7 +137,7 @@ impl<T: Real> Support<T, 6> for PyramidalCone<'_, T> {
 }
 
 impl<T: Real> Contribution<T> for PyramidalCone<'_, T> {
-    fn reach(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
+    fn support_above(&self, u: &Vector<T, 6>, floor: T) -> Result<Option<(T, Vector<T, 6>)>, Failure> {
         let Some(points) = &self.points else { return Ok(None) };
         let point = points.support(u)?;
         let value = point.dot(u);

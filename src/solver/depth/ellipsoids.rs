@@ -70,7 +70,7 @@ impl<T: Real> Solver<'_, T, 3> {
         options: &Options<'_, T, 3>,
     ) -> Depth<T> {
         match pair.off_common_axes(options).and_then(|off| self.ask_along_axes(pair, off, calls, options)) {
-            Some(known) if !known.outcome.is_open() => Depth::new(&known, pair),
+            Some(known) if !known.outcome.is_inconclusive() => Depth::new(&known, pair),
             Some(known) => self.expand_beside(pair, &known, options),
             None => self.expand_pair(pair, calls, options),
         }

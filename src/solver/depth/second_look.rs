@@ -19,7 +19,7 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         answer: &Answer<T, N>,
         options: &Options<'_, T, N>,
     ) -> Depth<T, N> {
-        if !answer.outcome.is_open() {
+        if !answer.outcome.is_inconclusive() {
             return Depth::new(answer, pair);
         }
         let second = self.look_again_at_pair(pair, answer, options);

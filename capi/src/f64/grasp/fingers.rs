@@ -97,8 +97,8 @@ impl Support<f64, 6> for CheckedFinger {
 }
 
 impl Contribution<f64> for CheckedFinger {
-    fn reach(&self, u: &Vector<f64, 6>, floor: f64) -> Result<Option<(f64, Vector<f64, 6>)>, Failure> {
-        self.finger().reach(u, floor)
+    fn support_above(&self, u: &Vector<f64, 6>, floor: f64) -> Result<Option<(f64, Vector<f64, 6>)>, Failure> {
+        self.finger().support_above(u, floor)
     }
 }
 

@@ -221,7 +221,7 @@ impl<T: Real> Solver<'_, T, 3> {
         query.plan = Plan::Meridian;
         let answer = self.report(query, Stop::Met, lower, witness);
         // (What the axes are off is charged in all directions: too much where bodies are uneven.)
-        Ok(if answer.outcome.is_open() { SectorsEnd::Failed } else { SectorsEnd::Done(answer) })
+        Ok(if answer.outcome.is_inconclusive() { SectorsEnd::Failed } else { SectorsEnd::Done(answer) })
     }
 }
 
