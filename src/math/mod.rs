@@ -52,6 +52,7 @@ pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
 }
 
 /// x . y of numbers in a row, added up in their order.
+#[cfg(feature = "grasp")] // nobody else needs it
 #[inline]
 pub(crate) fn dot<T: Real, const K: usize>(x: &[T; K], y: &[T; K]) -> T {
     x.iter().zip(y).fold(T::zero(), |s, (&a, &b)| s + a * b)
