@@ -87,7 +87,7 @@
 //!
 //! * [`Refined`]: the weakest direction to rounding, what each contact carries there ([`Share`]), and the gradient of d with
 //!   respect to each contact ([`ContactGradient`]), or why there is none ([`Kink`]).
-//! * [`mod@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
+//! * [`fn@linearized`]: friction pyramids instead of cones, as other tools have them ([`Preset`]): their number beside the exact one.
 //! * [`Closure`]: is the grasp force-closed? Yes or no, with a ball in W or a direction that separates; or undecided, next to rounding.
 //!   [`Best`](crate::Best): the best of many grasps.
 //! * [`ForceSolver`]: the smallest contact forces that resist one given wrench, in microseconds: the same question with a segment for

@@ -84,7 +84,7 @@ impl<T: Real> Preset<T> {
     }
 
     /// FRoGGeR's `ferrari_canny_L1` with its `ns` sides and `lamb` > 0, both by default 4 and 1; positions in the object's frame. For
-    /// its min-weight metric see [`opposed_mean`].
+    /// its min-weight metric see [`opposed_mean`](super::opposed_mean).
     ///
     /// # Errors
     /// [`ContactError::Frame`] for a `lamb` that is not a positive number of usual size.
