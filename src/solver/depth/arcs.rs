@@ -9,6 +9,7 @@
 //! 3. The sectors around each body's axis.
 //! 4. The sectors around an edge of the other body that runs nearly along the axis.
 //! 5. Expansion with all the memory there is: smooth bodies, tolerances near roundoff.
+//! 6. Where memory has ended that, the sectors as exactly as rounding lets them.
 //!
 //! The rounding of the sectors' points, beside that of M's own: axes and azimuths are unit and orthogonal to 4 u, a point is split in two and put together again
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
