@@ -35,6 +35,8 @@ refused 'no command nothing' nothing
 refused 'no file nofile' compare CASES=nofile
 refused 'no file nofile' compare CASES="tests/data/std_hull8.txt nofile" "OUT=$folder/out"
 refused 'names no file' compare CASES=
+refused 'no program `nosuchcc`' lib CC=nosuchcc
+refused 'no program' lib CARGO=
 refused 'is empty' compare "CASES=$folder/empty.txt"
 refused 'does not know CASE' compare CASE=tests/data/std_hull8.txt
 refused 'OUT' compare OUT=

@@ -114,6 +114,7 @@ fn background(a: &Model, b: &Model, sigma: bool, poses: Receiver<Isometry3<f64>>
     }
 }
 
+/// The object norm takes a volume: the tool of an open surface has none (`run` refuses it).
 fn metric(a: &Model, sigma: bool) -> &dyn Metric {
     match a.sigma() {
         Some(norm) if sigma => norm,
@@ -156,6 +157,9 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         [a, b] => (body(a.display(), read(a)?)?, body(b.display(), read(b)?)?),
         _ => (body("tool", tool())?, body("part", part())?),
     };
+    if sigma && a.sigma().is_none() {
+        return Err("--metric sigma: the tool is no solid, and an open surface has no volume to integrate over".into());
+    }
     let mut out = io::stdout().lock();
     begin(&mut out, &a, &b).map_err(written)?;
     let metric = metric(&a, sigma);

@@ -22,6 +22,15 @@ pub const CLOSED: &str = "";
 
 const OUTPUT: &str = "standard output";
 
+/// An answer that is not in its reference's bracket is trouble, whoever is right.
+pub fn agree(contradictions: usize) -> Result<(), Trouble> {
+    match contradictions {
+        0 => Ok(()),
+        1 => Err("1 bracket contradicts its reference".into()),
+        n => Err(format!("{n} brackets contradict their references")),
+    }
+}
+
 /// What went wrong with the standard output.
 pub fn written(error: io::Error) -> Trouble {
     if error.kind() == io::ErrorKind::BrokenPipe { CLOSED.into() } else { format!("{OUTPUT}: {error}") }

@@ -6,7 +6,7 @@
 //! need. Then the two take turns, rays three times as long. Both stop where they are and go on from there, and each knows the other's upper bounds.
 //!
 //! No schedule that does not know how much work the plans need keeps below twice the better one always. This one mostly does, and takes up to three
-//! times as long at worst.
+//! times as long at times.
 //!
 //! What rays need was measured on octahedra, boxes, ellipsoids and hulls of random points in two to six dimensions, with 1 to 20,000 vertices of
 //! Q: between (N + 9) / 4 steps for each and twice as many. (Where Q says nothing about some directions, N + 1 short rays more are needed.)

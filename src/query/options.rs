@@ -16,8 +16,9 @@ pub struct Options<'a, T, const N: usize> {
     pub relative: T,
     /// Stop as soon as d >= threshold or d < threshold is certain.
     pub threshold: Option<T>,
-    /// Most steps (see [`Answer::iterations`](crate::Answer::iterations)). `None`, the default: 50,000, and 64 for each vertex of a polytopal Q. (What a query needs grows with a power
-    /// of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth; how long that takes, `examples/worst_case.rs` measures.)
+    /// Most steps (see [`Answer::iterations`](crate::Answer::iterations)). `None`, the default: 50,000, and 64 for each vertex of a
+    /// polytopal Q. (What a query needs grows with a power of 1 / tolerance, up to (dimension - 1) / 2 where A is smooth; how long that
+    /// takes, `examples/worst_case.rs` measures.)
     pub max_iterations: Option<u32>,
     /// The direction to look in first (any length, not zero): where the answer was last time.
     pub guess: Option<Vector<T, N>>,

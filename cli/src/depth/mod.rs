@@ -98,7 +98,7 @@ pub fn run(request: &Request) -> Result<(), Trouble> {
         .map_err(written)?;
     }
     out.flush().map_err(written)?;
-    if wrong == 0 { Ok(()) } else { Err(format!("{wrong} brackets contradict their reference")) }
+    crate::agree(wrong)
 }
 
 fn solve_all<T: Real>(request: &Request, cases: &[Case]) -> Result<Vec<Found>, Trouble> {

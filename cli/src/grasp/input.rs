@@ -167,6 +167,9 @@ pub fn read(text: &str, normalize: bool) -> Result<Vec<Grasp>, Trouble> {
         }
         _ => file.things("grasp", LIST)?,
     };
+    if list.is_empty() {
+        return Err("a list of no grasps; it must be a list of one grasp or more".into());
+    }
     let mut seen = HashMap::new();
     let unique = |(i, here): (usize, &Field)| {
         let id = here.get("id").maybe(Field::name)?.unwrap_or_else(|| i.to_string());
@@ -411,7 +414,6 @@ mod tests {
         assert_eq!(grasp.contacts[0].contact.contact.friction(), Friction::Hard { mu: 0.5 });
         assert!(grasp.contacts[0].contact.jacobian.is_none());
         assert_eq!(read(&format!("[{BARE}, {BARE}]"), false).unwrap().len(), 2);
-        assert_eq!(read("[]", false).unwrap().len(), 0);
         assert_eq!(read(&format!(r#"{{"instances": [{BARE}]}}"#), false).unwrap().len(), 1);
     }
 
@@ -509,6 +511,8 @@ mod tests {
             (contact(r#""force_cap": 1e300"#), "grasp 0, contact 0: `force_cap` is 1e+300: the force cap is"),
             (grasp(r#""L": 1e-300"#), "grasp 0: `L` is 1e-300: "),
             (grasp(r#""reference": [0, 1e300, 0]"#), "grasp 0: `reference` is [0,1e+300,0]: "),
+            ("[]".into(), "it must be a list of one grasp or more"),
+            (r#"{"instances": []}"#.into(), "it must be a list of one grasp or more"),
             (r#"{"contacts": []}"#.into(), "grasp 0: `contacts` is []; it must be a list of one contact or more"),
             ("{}".into(), "`instances` is missing; it must be a list of grasps"),
             ("7".into(), "the file is 7; it must be a list of grasps"),

@@ -128,7 +128,7 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
         grasp.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
         progress.tell(done, &grasp.id);
         let sets = Sets::of_grasp(grasp)?;
-        if grasp.queries.is_empty() && !request.csv {
+        if grasp.queries.is_empty() {
             grasp.queries = usual_queries(grasp)?;
         }
         if !request.csv {
@@ -160,7 +160,8 @@ fn report(request: &Request, mut grasps: Vec<Grasp>, out: &mut dyn Write) -> Res
             writeln!(out, "{inside} of {known} references are in their brackets").map_err(written)?;
         }
     }
-    Ok(())
+    out.flush().map_err(written)?;
+    crate::agree(known - inside)
 }
 
 /// Answers on the standard output.
@@ -206,5 +207,19 @@ mod tests {
         for flag in ["relative", "seconds"] {
             refuses::<Request>("a", flag, &["nan", "inf", "-1", "0", "1e9", "x"]);
         }
+    }
+    /// The answers of a grasp without `refs` are the usual ones, in numbers, too; one that is not in its reference's bracket is trouble.
+    #[test]
+    fn answers_and_references() {
+        let contacts = r#""contacts": [{"p": [-1, 0, 0], "n": [1, 0, 0], "mu": 0.5, "mus": 0.1}, {"p": [1, 0, 0], "n": [-1, 0, 0], "mu": 0.5, "mus": 0.1}]"#;
+        let answers = |refs: &str| {
+            let grasps = input::read(&format!("{{{contacts}{refs}}}"), false).unwrap();
+            let mut out = Vec::new();
+            let told = report(&parse("a --csv").unwrap(), grasps, &mut out);
+            (told, String::from_utf8(out).unwrap().lines().count())
+        };
+        assert_eq!(answers(""), (Ok(()), 3));
+        let (told, lines) = answers(r#", "refs": [{"set": "W", "norm": "L1", "Q": {"type": "ball"}, "d": 5.0}]"#);
+        assert_eq!((told.unwrap_err().as_str(), lines), ("1 bracket contradicts its reference", 2));
     }
 }

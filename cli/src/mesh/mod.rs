@@ -132,5 +132,6 @@ fn answer_all(
     } else if readable && queries.len() > 1 && !matches!(source, Source::Pair(..)) {
         table::summary(&mut out, &rows).map_err(written)?;
     }
-    out.flush().map_err(written)
+    out.flush().map_err(written)?;
+    crate::agree(rows.iter().filter(|row| row.contradiction().is_some()).count())
 }
