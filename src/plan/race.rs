@@ -2,14 +2,16 @@
 //!
 //! A ray costs about the same for each vertex of Q, whatever A is like: some steps, most of them ended early by what the rays before have shown.
 //! Expansion looks at all vertices for each facet, and how many facets it makes depends on A: ten inside an octahedron, thousands inside a smooth
-//! set of dimension 6; nobody knows before it is done. So expansion begins, and may do three quarters of the work that the rays are expected to
-//! need. Then the two take turns, rays three times as long. Both stop where they are and go on from there, and each knows the other's upper bounds.
+//! set of dimension 6; nobody knows before it is done. So expansion begins, and may do one and a half times the work that the rays need at least.
+//! Then they take turns: rays so much at a time, and expansion an eighth of it. Both stop where they are and go on from there, and each knows the
+//! other's upper bounds.
 //!
-//! No schedule that does not know how much work the plans need keeps below twice the better one always. This one mostly does, and takes up to three
-//! times as long at times.
+//! No schedule that does not know how much work the plans need keeps below twice the better one always. This one does nearly always, as long as a
+//! support point costs about what it does for a small A.
 //!
 //! What rays need was measured on octahedra, boxes, ellipsoids and hulls of random points in two to six dimensions, with 1 to 20,000 vertices of
-//! Q: between (N + 9) / 4 steps for each and twice as many. (Where Q says nothing about some directions, N + 1 short rays more are needed.)
+//! Q: between (N + 9) / 4 steps for each and twice as many; more where A is smooth or Q has a few vertices only. (Where Q says nothing about some
+//! directions, N + 1 short rays more are needed.)
 
 use super::expansion::Expanded;
 use super::rays::{Crossings, RaySearch};
@@ -19,11 +21,10 @@ use crate::query::{Query, Work};
 use crate::scalar::Real;
 use crate::support::Failure;
 
-/// The share of what rays are expected to need that expansion may do at first.
-const FIRST: u64 = 6;
-/// The shares that the two may do in a turn, when expansion was not done by then.
-const TURNS: [u64; 2] = [3, 1];
+/// Shares of what rays need at least: how many of them expansion may do at first, and how many expansion and rays may do in a turn.
 const OF: u64 = 8;
+const FIRST: u64 = 12;
+const TURNS: [u64; 2] = [1, 8];
 
 /// Which plan has answered.
 pub(crate) enum Ended<T, const N: usize> {
@@ -38,21 +39,20 @@ pub(crate) fn race<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     let mut rays = RaySearch::new(query);
-    let by_rays = cost(&rays, query);
-    let (mut expands, mut turn) = (true, by_rays / OF * FIRST);
+    let mut turns = Turns { share: (cost(&rays, query) / OF).max(1), surplus: [0; 2], expands: true };
+    query.work.allow(turns.share.saturating_mul(FIRST));
     loop {
-        query.work.allow(turn);
-        if expands {
-            let expanded = polytope.expand(query)?;
-            match expanded.stop {
-                Stop::Turn => {}
-                Stop::Rounding | Stop::Capacity => return second(polytope, query, expanded, &mut rays),
+        if turns.expands {
+            let expanded = polytope.expand(query);
+            match expanded.as_ref().map(|expanded| expanded.stop) {
+                Ok(Stop::Turn) => {}
+                Ok(Stop::Rounding | Stop::Capacity) => return second(polytope, query, expanded?, &mut rays),
                 // What the rays have shown before still holds.
                 _ => {
                     if let Some(found) = &rays.found {
                         query.raise(found.lower, found.reach);
                     }
-                    return Ok(Ended::Expansion(expanded));
+                    return expanded.map(Ended::Expansion);
                 }
             }
         } else if rays.advance(query)? {
@@ -66,9 +66,33 @@ pub(crate) fn race<T: Real, const N: usize>(
                 _ => Ok(Ended::Expansion(expanded)),
             };
         }
-        let [by_turns, again] = TURNS;
-        turn = by_rays / OF * if expands { by_turns } else { again };
-        expands = !expands;
+        let turn = turns.pass(query.work.surplus());
+        query.work.allow(turn);
+    }
+}
+
+/// Whose turn it is. A plan stops where it can; what it has done too much by then is missing in its next turn.
+struct Turns {
+    share: u64,
+    surplus: [u64; 2],
+    expands: bool,
+}
+
+impl Turns {
+    /// The turn is over. How much work is the next one?
+    fn pass(&mut self, surplus: u64) -> u64 {
+        let [expansion, rays] = &mut self.surplus;
+        *(if self.expands { expansion } else { rays }) = surplus;
+        loop {
+            self.expands = !self.expands;
+            let [expansion, rays] = &mut self.surplus;
+            let (surplus, turns) = if self.expands { (expansion, TURNS[0]) } else { (rays, TURNS[1]) };
+            let turn = self.share.saturating_mul(turns);
+            if *surplus < turn {
+                return turn - core::mem::take(surplus);
+            }
+            *surplus -= turn;
+        }
     }
 }
 
@@ -130,11 +154,11 @@ fn told<T: Real, const N: usize>(
     if let Some(found) = decided(query, rays) {
         return Ok(Some(found));
     }
-    let ends = rays.upper_is_found && !query.is_spent() && polytope.ends_near_origin(query)?;
-    if ends {
-        query.spend();
+    if !rays.upper_is_found || query.is_spent() || !polytope.ends_near_origin(query)? {
+        return Ok(None);
     }
-    Ok(if ends { decided(query, rays) } else { None })
+    query.spend();
+    Ok(decided(query, rays))
 }
 
 /// Rays that have decided the query; of others the lower bound is kept.

@@ -111,35 +111,44 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     /// Pass after pass.
     fn shoot_passes(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         loop {
-            match self.shoot_all(query).and_then(|shot| self.verify(query, shot)) {
-                Ok(Shot::Hit) => {}
+            let shot = match self.shoot_pass(query) {
+                Ok(Shot::Again) => continue,
                 Ok(Shot::Stopped(Stop::Turn)) => return Ok(false),
-                // What a shortcut showed is no end of A: from now on there are none.
-                Ok(Shot::Again) => {
-                    self.restart();
-                    continue;
+                other => other,
+            };
+            let ended = match shot {
+                Ok(Shot::Hit) => {
+                    if self.at_edge && query.stopped().is_none() {
+                        query.spend(); // No surface around the origin proves more.
+                    }
+                    return Ok(true);
                 }
-                // What an earlier pass has shown still holds.
                 Ok(shot) => {
                     if matches!(shot, Shot::Left) {
                         query.spend();
                     }
-                    let stop = query.exhausted().unwrap_or(Stop::Rounding);
-                    self.found.iter_mut().for_each(|earlier| earlier.stop = stop);
-                    return Ok(true);
+                    query.exhausted().unwrap_or(Stop::Rounding)
                 }
-                Err(Failure(code)) => {
-                    let earlier = self.found.as_mut().ok_or(Failure(code))?;
-                    earlier.stop = Stop::Failed(code);
-                    return Ok(true);
-                }
+                Err(failure) if self.found.is_none() => return Err(failure),
+                Err(Failure(code)) => Stop::Failed(code),
+            };
+            // What an earlier pass has shown still holds.
+            self.found.iter_mut().for_each(|earlier| earlier.stop = ended);
+            return Ok(true);
+        }
+    }
+
+    /// The rays of this pass, and what they show. `Again`: another one follows.
+    fn shoot_pass(&mut self, query: &mut Query<'_, T, N>) -> Result<Shot, Failure> {
+        let shot = self.shoot_all(query)?;
+        match self.verify(query, shot)? {
+            // What a shortcut showed is no end of A: from now on there are none.
+            Shot::Again => {
+                self.restart();
+                Ok(Shot::Again)
             }
-            if self.conclude(query)? {
-                if self.at_edge && query.stopped().is_none() {
-                    query.spend(); // No surface around the origin proves more.
-                }
-                return Ok(true);
-            }
+            Shot::Hit if !self.conclude(query)? => Ok(Shot::Again),
+            shot => Ok(shot),
         }
     }
 

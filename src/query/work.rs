@@ -15,11 +15,11 @@ impl<const N: usize> Work<N> {
     /// A support call, with the step of a ray that it belongs to.
     pub const STEP: u64 = 60 + 20 * N as u64;
     /// A facet that is made.
-    pub const FACET: u64 = 20 + 3 * (N * N) as u64;
+    pub const FACET: u64 = 30 + (N * N * N * N) as u64 / 8;
 
     /// Nothing is done, and everything allowed.
     pub fn new(vertices: usize) -> Self {
-        Work { done: 0, allowed: u64::MAX, unit: vertices as u64 * 2 * N as u64 / 5 }
+        Work { done: 0, allowed: u64::MAX, unit: vertices as u64 * N as u64 / 4 }
     }
 
     /// What a value of Q costs.
@@ -36,6 +36,11 @@ impl<const N: usize> Work<N> {
     /// Allows so much more; `u64::MAX`: everything.
     pub fn allow(&mut self, more: u64) {
         self.allowed = self.done.saturating_add(more);
+    }
+
+    /// How much more than was allowed has been done.
+    pub fn surplus(&self) -> u64 {
+        self.done.saturating_sub(self.allowed)
     }
 
     /// Is all work done that is allowed?

@@ -369,12 +369,12 @@ fn choose<T: Real, const N: usize>(
     if query.rays() > 0 && stop.is_none() {
         return race(polytope, query);
     }
-    if query.rays() > 0
-        && stop == Some(Stop::Flat)
-        && !(query.inner_radius() > T::zero())
-        && let Some(rays) = by_rays(query)?
-    {
-        return Ok(Ended::Rays(rays));
+    if query.rays() > 0 && stop == Some(Stop::Flat) && !(query.inner_radius() > T::zero()) {
+        if let Some(rays) = by_rays(query)? {
+            return Ok(Ended::Rays(rays));
+        }
+        // (A limit that was met on the way is what ended the query.)
+        return expand(polytope, query, query.stopped().or(stop)).map(Ended::Expansion);
     }
     expand(polytope, query, stop).map(Ended::Expansion)
 }

@@ -5,12 +5,14 @@ use crate::common;
 
 use common::cases::{Placed, Shape};
 use common::dd::{BLUR, Dd, v3};
+use common::dice::Dice;
 use common::exact::pair_value;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet};
+use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
-use qdist::{Options, Outcome, Real, Vector};
+use qdist::{Options, Outcome, Plan, Real, Vector};
+use std::cell::Cell;
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
@@ -336,4 +338,62 @@ fn a_first_vertex_in_the_origin() {
     // In the plane x = 0, its projection has the origin deep inside.
     let answer = memory.solver::<f64, 3>().solve_in_span(&set, &Ball::unit(), &brisk());
     assert!(answer.lower <= 0.0 && 0.0 <= answer.upper, "{:?}", Seen::from(&answer));
+}
+
+/// A flat set that contains the origin by definition, and rays along it: a limit on their way was told as precision, or as an open set.
+#[test]
+fn a_limit_while_rays_run_along_a_flat_set() {
+    for (half, target, last) in [([1.0, 0.7, 0.0], [0.3, 0.2, 0.0], 20), ([0.0, 0.3, 0.9], [0.0, 0.2, 0.1], 10)] {
+        let set = BoxShape::new(Vector::from(half)).unwrap();
+        let segment = Segment::new(Vector::from(target)).unwrap();
+        for limit in 0..last {
+            let options = Options { max_iterations: Some(limit), ..Options::default() };
+            let mut memory = Memory::new::<f64, 3>(64, 128);
+            let seen = Seen::from(&memory.solver::<f64, 3>().solve(&set, &segment, &options));
+            assert_eq!(seen.outcome, Outcome::Iterations, "{half:?} {limit}: {seen:?}");
+        }
+    }
+}
+
+/// An ellipsoid that answers so many times.
+struct Answers {
+    set: Ellipsoid<f64, 6>,
+    left: Cell<u32>,
+}
+
+impl Support<f64, 6> for Answers {
+    fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+        let left = self.left.get().checked_sub(1).ok_or(Failure(7))?;
+        self.left.set(left);
+        self.set.support(u)
+    }
+    fn extent(&self) -> f64 {
+        self.set.extent()
+    }
+    fn contains_origin(&self) -> bool {
+        true
+    }
+}
+
+/// When the support function failed during an expansion that took turns with rays, what a pass of the rays had shown was lost (0 for 0.44).
+#[test]
+fn a_failure_does_not_cost_what_rays_have_shown() {
+    let mut dice = Dice::new(41);
+    let points: Vec<[f64; 6]> = (0..12).map(|_| dice.direction()).collect();
+    let q = Vertices::new(&points).unwrap();
+    let set = Ellipsoid::new(Vector::from([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])).unwrap();
+    let options = Options { max_iterations: Some(100_000), relative: 1e-3, ..Options::default() };
+    let (mut best, mut outcome) = (f64::MIN, Outcome::SupportFailed);
+    for calls in 1..1000 {
+        let set = Answers { set, left: Cell::new(calls) };
+        let mut memory = Memory::new::<f64, 6>(500, 4000);
+        let answer = memory.solver::<f64, 6>().solve(&set, &q, &options);
+        assert!(answer.lower >= best - 1e-12, "{calls}: {best} before, {:?}", Seen::from(&answer));
+        (best, outcome) = (best.max(answer.lower), answer.outcome);
+        if outcome != Outcome::SupportFailed {
+            assert_eq!(answer.plan, Plan::Rays);
+            break;
+        }
+    }
+    assert_eq!(outcome, Outcome::Converged);
 }

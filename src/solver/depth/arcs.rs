@@ -25,11 +25,11 @@ use super::sectors::{SectorsEnd, Spin};
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
 use crate::qset::Ball;
-use crate::query::Options;
 use crate::query::answer::{Answer, Outcome};
+use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
-use crate::support::Symmetry;
+use crate::support::{Failure, Support, Symmetry};
 
 /// Two axes are as good as one if what they are off is this share of the relative tolerance.
 pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
@@ -215,9 +215,7 @@ impl<T: Real> Solver<'_, T, 3> {
             return Depth::new(&answer, pair);
         }
         let ball = Ball::unit();
-        let (mut query, checked) = Pair::query(pair, &ball, calls, &options);
-        query.resume(before);
-        let answer = self.expand_only((query, checked));
+        let answer = self.expand_only(resumed(pair, &ball, calls, &options, before));
         if answer.outcome == Outcome::Capacity
             && let Some(better) = self.search_arcs_roughly(pair, &mut calls, &options, &answer)
         {
@@ -243,8 +241,7 @@ impl<T: Real> Solver<'_, T, 3> {
         }
         // That the sectors' points are off says nothing of a height: it is asked for once more without that charge.
         let ball = Ball::unit();
-        let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
-        query.resume(&found);
+        let (mut query, checked) = resumed(pair, &ball, *calls, options, &found);
         let asked = checked.and_then(|()| query.normalize()).and_then(|()| query.support(&found.direction));
         let mut bracket = Bracket { lower: found.lower, upper: found.upper }.scaled(query.scale());
         if asked.is_ok() && query.best.direction == found.direction {
@@ -270,8 +267,7 @@ impl<T: Real> Solver<'_, T, 3> {
             }
             let uncharged = pair.charge(pair.rounding_of_sectors());
             let ball = Ball::unit();
-            let (mut query, checked) = Pair::query(pair, &ball, *calls, options);
-            query.resume(known);
+            let (mut query, checked) = resumed(pair, &ball, *calls, options, known);
             let found = checked.and_then(|()| query.normalize()).and_then(|()| self.search_sectors(&mut query, &spin));
             let iterations = query.iterations();
             *calls = query.support_calls();
@@ -287,4 +283,17 @@ impl<T: Real> Solver<'_, T, 3> {
         }
         None
     }
+}
+
+/// A query of the pair that goes on from an answer.
+fn resumed<'q, T: Real>(
+    set: &'q dyn Support<T, 3>,
+    ball: &'q Ball<T>,
+    calls: u32,
+    options: &Options<'q, T, 3>,
+    known: &Answer<T, 3>,
+) -> (Query<'q, T, 3>, Result<(), Failure>) {
+    let (mut query, checked) = Pair::query(set, ball, calls, options);
+    query.resume(known);
+    (query, checked)
 }
