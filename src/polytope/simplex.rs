@@ -49,18 +49,22 @@ pub(crate) struct Edges<T, const N: usize> {
     pub inverse: [T; N],
     r: [[T; N]; N],
     pub count: usize,
-    /// Is what cancellation leaves of an edge made orthogonal once more?
-    twice: bool,
 }
 
 impl<T: Real, const N: usize> Edges<T, N> {
     pub fn new() -> Self {
-        Edges { q: [Vector::zeros(); N], inverse: [T::zero(); N], r: [[T::zero(); N]; N], count: 0, twice: false }
+        Edges { q: [Vector::zeros(); N], inverse: [T::zero(); N], r: [[T::zero(); N]; N], count: 0 }
     }
 
     /// Adds an edge; false when it lies in the span of the others up to `resolution`.
     #[inline(always)]
     pub fn push(&mut self, edge: &Vector<T, N>, resolution: T) -> bool {
+        self.push_by::<false>(edge, resolution)
+    }
+
+    /// The same; `TWICE`: what cancellation leaves of the edge is made orthogonal once more.
+    #[inline(always)]
+    fn push_by<const TWICE: bool>(&mut self, edge: &Vector<T, N>, resolution: T) -> bool {
         let column = self.count;
         let mut rest = *edge;
         for i in 0..N {
@@ -73,7 +77,7 @@ impl<T: Real, const N: usize> Edges<T, N> {
             }
         }
         let mut squared = rest.dot(&rest);
-        if self.twice && squared < edge.dot(edge) * T::of(1e-3) {
+        if TWICE && squared < edge.dot(edge) * T::of(1e-3) {
             rest = self.cleared(&rest);
             squared = rest.dot(&rest);
         }
@@ -211,13 +215,13 @@ impl<T: Real, const N: usize> Simplex<T, N> {
     /// `resolution`: then the weights are still those of a point of the simplex, but perhaps not of the nearest.
     #[inline(always)]
     pub fn minimize(&mut self, resolution: T) -> bool {
-        self.minimize_by(resolution, false)
+        self.minimize_by::<false>(resolution)
     }
 
-    /// The same; `twice`: for corners that are near each other and far from the rest.
-    pub(crate) fn minimize_by(&mut self, resolution: T, twice: bool) -> bool {
+    /// The same; `TWICE`: for corners that are near each other and far from the rest.
+    pub(crate) fn minimize_by<const TWICE: bool>(&mut self, resolution: T) -> bool {
         for _ in 0..MAX_CORNERS {
-            let Some(target) = self.affine_minimizer(resolution, twice) else { return false };
+            let Some(target) = self.affine_minimizer::<TWICE>(resolution) else { return false };
             // The largest step from the weights towards the target that keeps all of them >= 0.
             let mut step = T::one();
             for (corner, &goal) in self.corners.iter().zip(&target) {
@@ -251,12 +255,12 @@ impl<T: Real, const N: usize> Simplex<T, N> {
     }
 
     /// Weights of the point of the affine hull nearest to the origin.
-    fn affine_minimizer(&self, resolution: T, twice: bool) -> Option<[T; MAX_CORNERS]> {
+    fn affine_minimizer<const TWICE: bool>(&self, resolution: T) -> Option<[T; MAX_CORNERS]> {
         let mut weights = [T::zero(); MAX_CORNERS];
         let base = self.corners.first()?.vertex.point;
-        let mut edges = Edges::<T, N> { twice, ..Edges::new() };
+        let mut edges = Edges::<T, N>::new();
         for corner in self.corners.iter().skip(1) {
-            if !edges.push(&(corner.vertex.point - base), resolution) {
+            if !edges.push_by::<TWICE>(&(corner.vertex.point - base), resolution) {
                 return None;
             }
         }

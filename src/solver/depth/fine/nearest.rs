@@ -73,7 +73,7 @@ fn flattened<T: Real, const N: usize>(
         corner.vertex.witness = corner.vertex.point;
         corner.vertex.point = (aside - n * n.dot(&aside)) * narrow + n * (rise - height);
     }
-    flat.minimize_by(T::count(4) * T::ROUNDOFF * distance * narrow, true);
+    flat.minimize_by::<true>(T::count(4) * T::ROUNDOFF * distance * narrow);
     for corner in &mut flat.corners {
         let whole = all.corners.iter().find(|whole| whole.vertex.point == corner.vertex.witness)?;
         corner.vertex = whole.vertex;
