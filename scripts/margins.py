@@ -122,14 +122,17 @@ ellipsoids: axes aside | solver/depth/ellipsoids.rs | let turned = @aside * T::o
 ellipsoids: matrices that stretch | solver/depth/ellipsoids.rs | T::of(2.1) + @stretched * T::count(32)@ + | T::zero()
 ellipsoids: rounding of what is measured | solver/depth/ellipsoids.rs | T::count(32) + @T::count(64) * T::ROUNDOFF@; | T::zero()
 
-half spaces: rounding of heights | solver/depth/half_space.rs | (sum.value(), @T::count(TWOFOLD_ROUNDOFFS) * (T::ROUNDOFF * T::ROUNDOFF * terms + T::TINY)@) | T::zero()
-half spaces: rounding of the depth | solver/depth/half_space.rs | @T::count(N + 8) * T::ROUNDOFF * parts@ | T::zero()
-half spaces: lower, the set's error | solver/depth/half_space.rs | let off = lost + @anchor.error * along@ | T::zero()
-half spaces: upper, the set's error | solver/depth/half_space.rs | let beyond = @anchor.error * along@ + | T::zero()
-half spaces: upper, direction astray | solver/depth/half_space.rs | + @astray * (anchor.extent + anchor.error) * T::count(2)@; | T::zero()
-half spaces: direction, rounding | solver/depth/half_space.rs | * T::of(1.01) + @lost@) | T::zero()
-half spaces: opposite for certain | solver/depth/half_space.rs | let upper = if @told.is_some()@ | true
-half spaces: not opposite for certain | solver/depth/half_space.rs | across > @rounding@) | T::zero()
+half spaces: rounding of heights | solver/depth/half_space/plane.rs | (sum.value(), @T::count(TWOFOLD_ROUNDOFFS) * (T::ROUNDOFF * T::ROUNDOFF * terms + T::TINY)@) | T::zero()
+half spaces: rounding of a ball's height | solver/depth/half_space/plane.rs | terms += @ball.abs() * self.length@ | T::zero()
+half spaces: rounding of the depth | solver/depth/half_space/plane.rs | @T::count(N + 8) * T::ROUNDOFF * parts@ | T::zero()
+half spaces: lower, the set's error | solver/depth/half_space/plane.rs | let off = @deepest.error * along@ | T::zero()
+half spaces: upper, the set's error | solver/depth/half_space/plane.rs | let beyond = @deepest.error * along@ + | T::zero()
+half spaces: upper, direction astray | solver/depth/half_space/plane.rs | + @deepest.astray * (anchor.extent + deepest.error) * T::count(2)@; | T::zero()
+half spaces: direction, rounding | solver/depth/half_space/deepest.rs | * T::of(1.01) + @lost@; | T::zero()
+half spaces: direction in two words, rounding | solver/depth/half_space/deepest.rs | error, astray: @lost@ } | T::zero()
+half spaces: a point in two words | solver/depth/half_space/deepest.rs | let error = @size * (T::count(1 << 9) * T::ROUNDOFF * T::ROUNDOFF)@ | T::zero()
+half spaces: opposite for certain | solver/depth/half_space/plane.rs | let upper = if @told.is_some()@ | true
+half spaces: not opposite for certain | solver/depth/half_space/plane.rs | across > @rounding@) | T::zero()
 
 fine: lower, error of heights | solver/depth/fine/level.rs | least.at_most(distance - @error@) | T::zero()
 fine: upper, error of heights | solver/depth/fine/level.rs | distance + @error@ | T::zero()
@@ -176,6 +179,9 @@ HIDDEN = {
     "ellipsoids: matrices that stretch": "32 roundoffs of a semi axis, where ball and points are charged 52",
     "ellipsoids: rounding of what is measured": "of some twenty roundoffs the square is lost",
     "half spaces: direction, rounding": "a roundoff's square beside low words of a roundoff",
+    "half spaces: rounding of a ball's height": "shallow, the offset is as large a term; deep, a roundoff of the depth hides it",
+    "half spaces: direction in two words, rounding": "hidden by that of the point, as large",
+    "half spaces: a point in two words": "hidden by the rounding of heights, as large, of which it takes a few hundredths",
     "fine: nearest point aside, its error": "squared, over a length that is larger",
     "fine: origin beneath each facet": "as \"origin beneath the lowest facet\": the proof needs it",
 }
@@ -221,6 +227,9 @@ def switched(root, copy):
             text = text[:start] + switch + text[end:]
         texts[file] = text
     texts["src/lib.rs"] = "#![allow(unused_parens)]\n" + texts["src/lib.rs"] + SWITCH
+    for file in copy.rglob("*"):
+        if file.is_file() and str(file.relative_to(copy)) not in texts:
+            file.unlink()
     for file, text in texts.items():
         # (What is as it was is not built again.)
         if not (copy / file).exists() or (copy / file).read_text() != text:

@@ -26,6 +26,15 @@ impl<T: Real, const N: usize> core::ops::Neg for TwoWords<T, N> {
 }
 
 impl<T: Real, const N: usize> TwoWords<T, N> {
+    /// Coordinate by coordinate.
+    pub(crate) fn of(coordinate: impl Fn(usize) -> Accumulator<T>) -> Self {
+        let mut whole = Self::from(Vector::zeros());
+        for i in 0..N {
+            (whole.high[i], whole.low[i]) = coordinate(i).parts();
+        }
+        whole
+    }
+
     /// R x.
     pub(crate) fn turned(&self, rotation: &nalgebra::SMatrix<T, N, N>) -> Self {
         self.mapped(|i, j| rotation[(i, j)])
@@ -88,6 +97,18 @@ impl<T: Real, const N: usize> TwoWords<T, N> {
         whole
     }
 
+    /// |x|, for x neither very small nor very large: its root, rounded, and what that leaves out, to 2^5 u^2 of it.
+    pub(crate) fn length(&self) -> (T, T) {
+        let mut squared = Accumulator::new(T::zero());
+        for i in 0..N {
+            squared.add_product(self.high[i], self.high[i]);
+            squared.add_product(self.high[i], self.low[i] + self.low[i]);
+        }
+        let root = squared.value().root();
+        squared.add_product(-root, root);
+        (root, squared.value() / (root + root))
+    }
+
     /// x / |x|, each coordinate to 2^6 u^2: one step of Newton's method for the root, and one for each quotient. Zero where |x| is next to nothing.
     pub(crate) fn unit(&self) -> Self {
         let largest = self.high.iter().fold(T::zero(), |most, x| most.at_least(x.abs()));
@@ -96,14 +117,7 @@ impl<T: Real, const N: usize> TwoWords<T, N> {
         }
         let scale = T::one() / largest.power_of_two();
         let (high, low) = (self.high * scale, self.low * scale);
-        let mut squared = Accumulator::new(T::zero());
-        for i in 0..N {
-            squared.add_product(high[i], high[i]);
-            squared.add_product(high[i], low[i] + low[i]);
-        }
-        let root = squared.value().root();
-        squared.add_product(-root, root);
-        let slip = squared.value() / (root + root);
+        let (root, slip) = TwoWords { high, low }.length();
         let mut unit = Self::from(Vector::zeros());
         for i in 0..N {
             let quotient = high[i] / root;

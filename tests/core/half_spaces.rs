@@ -3,8 +3,10 @@
 
 use crate::common;
 
+use common::cases::{Placed, Shape};
 use common::dd::{BLUR, Dd, dot, norm};
 use common::dice::Dice;
+use common::exact::body_value;
 use common::memory::{Memory, Seen, broken_promise};
 use nalgebra::SMatrix;
 use qdist::support::{
@@ -157,9 +159,10 @@ fn random<T: Real, const N: usize>(
         let own = 100.0 * u * extent;
         let width = 64.0 * u * (d.abs() + ball) + own + 2000.0 * u * u * terms;
         assert!(upper - lower <= width, "{what} {width} {r:?}");
-        // And those that measure a body that does not state its extent.
+        // And those that measure a body that does not state its extent. A second one in two words where one is not enough.
         let measured = if shape.extent() > T::zero() { 0 } else { 2 * N as u32 };
-        assert_eq!(r.support_calls, 1 + measured, "{what} {r:?}");
+        let again = u > 1e-10 && measured == 0;
+        assert!(r.support_calls == 1 + measured || again && r.support_calls == 2, "{what} {r:?}");
         let expected = if upper < 0.0 {
             Outcome::Separated
         } else if lower <= 0.0 {
@@ -445,5 +448,53 @@ fn rough_rotations_take_ellipsoids_along() {
         let reach = (0..3).map(|j| (rows[2][j] * semi[j]).powi(2)).sum::<f64>().sqrt();
         let d = 0.5 - 0.75 + reach;
         assert!(r.lower <= d + 1e-15 && d - 1e-15 <= r.upper && r.upper - r.lower <= 1e-13, "{r:?} {d}");
+    }
+}
+
+/// A random shape of a kind of the case files, of size 0.2 to 1, in numbers of single precision.
+fn shape(kind: &str, dice: &mut Dice) -> Shape {
+    let count = match kind {
+        "sphere" => 1,
+        "box" | "ellipsoid" => 3,
+        "hull" => 36,
+        _ => 2,
+    };
+    let number = |dice: &mut Dice| if kind == "hull" { dice.signed() } else { dice.range(0.2, 1.0) };
+    Shape { kind: kind.to_string(), numbers: (0..count).map(|_| exact::<f32>(number(dice))).collect() }
+}
+
+/// Every kind of body on the ground in single precision, whichever way both are turned: overlaps of 0.001 to 0.1 converge, and the least that numbers allow
+/// is told to some roundoffs of a roundoff of the bodies' size.
+#[test]
+fn shallow_contact_with_the_ground_in_f32() {
+    let mut dice = Dice::new(46);
+    for kind in ["box", "sphere", "capsule", "cylinder", "cone", "ellipsoid", "hull"] {
+        for index in 0..300 {
+            let pose = Pose::<3>::random::<f32>(&mut dice, 0.0);
+            let turn = Pose::<3>::random::<f32>(&mut dice, 0.0).rotation;
+            let flat = std::array::from_fn(|k| turn[k / 3][k % 3]);
+            let placed = Placed { shape: shape(kind, &mut dice), rotation: flat, translation: [0.0; 3] };
+            let normal = dice.direction::<3>().map(exact::<f32>);
+            let w = pose.turned(&normal);
+            let least = body_value(&placed, &w.map(|x| Dd::from(0.0) - x));
+            // The offset brings the ground to a roundoff of the body, and the ground's place closer.
+            let deep = if index % 3 == 0 { 0.0 } else { exact::<f32>(dice.decade(-3.0, -1.0)) };
+            let offset = exact::<f32>(deep - least.to_f64());
+            let left = Dd::from(deep) - least - Dd::from(offset);
+            let place = w.map(|x| exact::<f32>(x.to_f64() * left.to_f64()));
+            let ground = Pose { translation: place, ..pose };
+            let depth = (least + Dd::from(offset) + dot(&w, &place.map(Dd::from))) / norm(&w);
+            let half_space = HalfSpace::<f32, 3>::new(vector(normal), offset as f32).unwrap();
+            let points = placed.shape.points::<f32>();
+            let set = placed.shape.build(&points).unwrap();
+            let r = ask(&placed.body(&*set).unwrap(), &ground.body(&half_space));
+            let (lower, upper) = (Dd::from(f64::from(r.lower)), Dd::from(f64::from(r.upper)));
+            assert!(lower <= depth && depth <= upper, "{kind} {depth:?} {r:?} {placed:?} {normal:?} {ground:?}");
+            if deep == 0.0 {
+                assert!(r.upper - r.lower <= 1e-10, "{kind} {depth:?} {r:?} {placed:?}");
+            } else {
+                assert_eq!(r.outcome, Outcome::Converged, "{kind} {depth:?} {r:?} {placed:?}");
+            }
+        }
     }
 }

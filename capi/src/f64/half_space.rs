@@ -1,8 +1,8 @@
 //! HALF SPACES
 //!
 //! The ground, a wall, a plane of contact: a body of qdist_depth3 with no end. Its depth against any other body is the height of
-//! that body's lowest point: one call of its support function (and six before, where its extent is not stated), no solver memory, and a bracket of a few roundoffs. (Bullet:
-//! btStaticPlaneShape, with the same normal and offset; FCL: fcl::Halfspace.) In C it is a body and nothing else: no set of a query,
+//! that body's lowest point: one call of its support function (and six before, where its extent is not stated; one more in two words, where the tolerance takes that
+//! and the body has `precise`), no solver memory, and a bracket of a few roundoffs. (Bullet: btStaticPlaneShape, with the same normal and offset; FCL: fcl::Halfspace.) In C it is a body and nothing else: no set of a query,
 //! no part of a hull of two bodies (QDIST_ERROR_UNBOUNDED).
 //!
 //! Two half spaces overlap without end (QDIST_UNBOUNDED), unless their normals are exactly opposite, as those of a floor and a ceiling: then

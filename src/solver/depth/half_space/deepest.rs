@@ -1,0 +1,58 @@
+//! What of a body reaches farthest into a half space.
+
+use crate::math::{TwoWords, Vector, finite, norm};
+use crate::scalar::Real;
+use crate::solver::depth::body::{Anchor, Body};
+use crate::support::Failure;
+use crate::support::failure::NOT_FINITE;
+
+/// The farthest point along a direction, in the body's frame.
+pub(super) struct Deepest<T, const N: usize> {
+    /// The point of the core, and what is put on it there.
+    pub core: TwoWords<T, N>,
+    pub swell: TwoWords<T, N>,
+    /// The balls around the placed point, one of them taken away.
+    pub balls: [T; 2],
+    /// How far the point is off what it stands for.
+    pub error: T,
+    /// How far the direction is off the one that was meant.
+    pub astray: T,
+}
+
+impl<T: Real, const N: usize> Deepest<T, N> {
+    /// By the support function, along the direction v, rounded; v is off by `lost`.
+    pub fn in_one_word(
+        a: &Body<'_, T, N>,
+        v: &TwoWords<T, N>,
+        lost: T,
+        anchor: &Anchor<T, N>,
+    ) -> Result<Self, Failure> {
+        let direction = v.high;
+        let point =
+            if a.shape.has_shortcuts() { a.shape.exhaustive(&direction)?.0 } else { a.shape.support(&direction)? };
+        if !finite(&point) {
+            return Err(Failure(NOT_FINITE));
+        }
+        let swell = direction * (a.inflation / norm(&direction));
+        let astray = norm(&v.low) * T::of(1.01) + lost;
+        let (core, swell) = (TwoWords::from(point), TwoWords::from(swell));
+        Ok(Deepest { core, swell, balls: [a.ball, T::zero()], error: anchor.error, astray })
+    }
+
+    /// The same in two words; `None` where the shape does not tell. A ball that rolls in the shape is its image under the body's matrix, as the shape is: it is put on
+    /// in the shape's frame, and taken away from the ball term.
+    pub fn in_two_words(a: &Body<'_, T, N>, v: &TwoWords<T, N>, lost: T, anchor: &Anchor<T, N>) -> Option<Self> {
+        // (Errors are told by what a shape says of its extents.)
+        if !(a.shape.extent() > T::zero() || anchor.extent.is_zero()) {
+            return None;
+        }
+        let core = a.shape.support_in_two_words(v)?;
+        let rolling = a.shape.rolling_radius();
+        let swell = v.unit().times(&Vector::repeat(rolling));
+        // 2^8 u^2 by the contract of the former, 2^6 for each coordinate of a unit vector and as much for the product.
+        let size = a.shape.extents().sum() + rolling * T::count(N);
+        let error = size * (T::count(1 << 9) * T::ROUNDOFF * T::ROUNDOFF) + T::count(1 << 10) * T::TINY;
+        let sane = finite(&core.high) && finite(&core.low) && error.finite();
+        sane.then_some(Deepest { core, swell, balls: [a.shape.radius(), -rolling], error, astray: lost })
+    }
+}
