@@ -1,4 +1,4 @@
-/* The times that the headers of the core and of grasps name, in microseconds on this machine: `make figures`. (Stack: `make stack`.) */
+/* The times that the headers of the core and of grasps name, in microseconds on this machine: `./x figures`. (Stack: `./x stack`.) */
 #define _POSIX_C_SOURCE 199309L
 #include "qdist_grasp.h"
 

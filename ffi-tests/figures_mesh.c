@@ -1,4 +1,4 @@
-/* The times that the header of meshes names, in microseconds on this machine: `make figures`. */
+/* The times that the header of meshes names, in microseconds on this machine: `./x figures`. */
 #define _POSIX_C_SOURCE 199309L
 #include "qdist_mesh.h"
 

@@ -76,7 +76,7 @@ fi
 # $1: what was written, $2: the header.
 install() {
     if [ "$check" = --check ]; then
-        diff -u "$2" "$1" || { echo "$2: stale; run \`make header\`" >&2; exit 1; }
+        diff -u "$2" "$1" || { echo "$2: stale; run \`./x header\`" >&2; exit 1; }
     else
         cp "$1" "$2"
         chmod 644 "$2"

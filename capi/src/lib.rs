@@ -1,4 +1,4 @@
-//! The C ABI of qdist: `include/qdist.h`, `qdist_grasp.h` and `qdist_mesh.h`, generated from this crate by `make header`.
+//! The C ABI of qdist: `include/qdist.h`, `qdist_grasp.h` and `qdist_mesh.h`, generated from this crate by `./x header`.
 //!
 //! * [`status`], [`symmetry`], [`version`], [`workspace`]: codes and their names, and callbacks without a scalar.
 //! * [`handle`]: a solver in the caller's memory.

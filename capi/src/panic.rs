@@ -1,5 +1,5 @@
 //! The panic handler of the freestanding C library. No panic can be reached from the exported functions, which
-//! `make purity` proves: with `must-not-panic` the handler calls a symbol that does not exist, so that a library in which a
+//! `./x purity` proves: with `must-not-panic` the handler calls a symbol that does not exist, so that a library in which a
 //! panic is reachable does not link.
 
 use core::panic::PanicInfo;

@@ -126,7 +126,10 @@ pub struct Answer<T, const N: usize> {
     pub witness: Simplex<T, N>,
     /// Affine dimension of the core of A, as far as it was found out: N unless `Degenerate` (or a flat core with a radius).
     pub dimension: usize,
-    /// Steps of all plans: directions along which A was asked for one point more to go on with.
+    /// Steps of all plans, which [`Options::max_iterations`](crate::Options::max_iterations) limits: points of A that a plan asked for to go on
+    /// with. No steps, and counted by `support_calls` alone, are the first points, the point with which a ray or a walk ends, what looks for a
+    /// rival or for the ends of an arc, what is asked again (without shortcuts, in two words), and what pushes facets out that rounding would
+    /// swallow. A pass of rays that ends without an answer counts a step that asks nothing.
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,

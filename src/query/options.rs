@@ -60,7 +60,7 @@ impl<T: Real, const N: usize> Options<'_, T, N> {
         (left > 0).then_some(Options { max_iterations: Some(left), ..*self })
     }
 
-    /// The most points, with so many vertices of Q.
+    /// The most steps, with so many vertices of Q.
     pub(super) fn most(&self, vertices: usize) -> u32 {
         let more = MAX_ITERATIONS_PER_VERTEX.saturating_mul(vertices as u32);
         if self.max_iterations.is_none() { self.limit().saturating_add(more) } else { self.limit() }

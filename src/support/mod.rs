@@ -137,7 +137,7 @@ pub trait Support<T: Real, const N: usize> {
         false
     }
 
-    /// Does the set, by its definition, contain the origin? `true` is a proof, `false` says nothing. Where the origin lies on the boundary no
+    /// Does the core, by its definition, contain the origin? `true` is a proof, `false` says nothing. Where the origin lies on the boundary no
     /// support value can tell, and then this is what d >= 0 rests on. The default knows that what is its own mirror image in all coordinates
     /// does. A wrapper that keeps the origin in its place should forward this.
     fn contains_origin(&self) -> bool {

@@ -32,11 +32,13 @@ pub enum ShapeError {
 impl fmt::Display for ShapeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Negative => "a size is negative",
-            Self::NonFinite => "a number is NaN, infinite or too large",
-            Self::Empty => "there are no points, or none but the origin",
-            Self::NotOrthonormal => "the matrix is farther than 1e-3 from orthonormal",
-            Self::Direction => "a direction is zero",
+            Self::Negative => {
+                "a size of the shape (a radius, half extent, semi axis, half height, margin or scale) is negative"
+            }
+            Self::NonFinite => "a number of the shape is NaN, infinite or too large",
+            Self::Empty => "the shape has no points, or the unit set none but the origin",
+            Self::NotOrthonormal => "the matrix of the shape is farther than 1e-3 from orthonormal",
+            Self::Direction => "a direction of the shape is zero",
         })
     }
 }

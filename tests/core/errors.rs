@@ -25,8 +25,9 @@ fn depth(half: f64, turn: f64) -> Result<f64, Box<dyn Error>> {
 fn the_example_of_the_readme_in_a_function_of_any_error() {
     assert!(depth(0.5, 1.0).is_ok());
     let message = |half, turn| depth(half, turn).unwrap_err().to_string();
-    assert_eq!(message(-0.5, 1.0), "a size is negative");
-    assert_eq!(message(f64::NAN, 1.0), "a number is NaN, infinite or too large");
+    let says = "a size of the shape (a radius, half extent, semi axis, half height, margin or scale) is negative";
+    assert_eq!(message(-0.5, 1.0), says);
+    assert_eq!(message(f64::NAN, 1.0), "a number of the shape is NaN, infinite or too large");
     assert_eq!(message(0.5, 1.1), "the matrix of the body's pose is not a rotation to within 1e-4");
     assert_eq!(message(0.5, f64::NAN), "a coordinate of the body's pose is NaN or infinite");
 }
@@ -37,7 +38,7 @@ fn a_hull_that_cannot_be_prepared_says_why() {
     let mut prepare = |points: &[[f64; 3]], words: usize| -> Box<dyn Error> {
         memory.solver().prepare_hull(points, &mut vec![0; words], None).err().unwrap().into()
     };
-    assert_eq!(prepare(&[], 100).to_string(), "there are no points, or none but the origin");
+    assert_eq!(prepare(&[], 100).to_string(), "the shape has no points, or the unit set none but the origin");
     let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
     assert!(Points::new(&flat).is_ok());
     assert_eq!(prepare(&flat, 100).to_string(), "the points of the hull lie in one plane");

@@ -40,8 +40,8 @@ use qdist::Real;
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most steps, over all plans; 0: 50,000, which take a second or two in dimension 6
-    /// (`make figures`), and 64 for each vertex of a polytopal Q.
+    /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take a second or two in dimension 6
+    /// (`./x figures`), and 64 for each vertex of a polytopal Q.
     pub max_iterations: u32,
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     pub interrupt: qdist_interrupt,
@@ -86,7 +86,7 @@ pub struct qdist_depth_f64 {
     pub point_b: [f64; 3],
     /// Affine dimension of A - B, without ball terms, as far as it was found out: 3 unless it is flat.
     pub dimension: u32,
-    /// Steps of all plans: directions along which a point was asked for to go on with.
+    /// Steps of all plans, as in qdist_result: points of A - B that were asked for to go on with.
     pub iterations: u32,
     /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
     /// state its extent.
@@ -134,7 +134,10 @@ pub struct qdist_result_f64 {
     pub point_count: u32,
     /// Affine dimension of A's core, as far as it was found out.
     pub dimension: u32,
-    /// Steps of all plans: directions along which a point was asked for to go on with.
+    /// Steps of all plans, which max_iterations limits: points of A that a plan asked for to go on with. No steps, and counted by support_calls
+    /// alone, are the first points, the point with which a ray or a walk ends, what looks for a rival or for the ends of an arc, what is asked
+    /// again (without shortcuts, in two words), and what pushes facets out that rounding would swallow. A pass of rays that ends without an
+    /// answer counts a step that asks nothing.
     pub iterations: u32,
     /// Calls of A's support function.
     pub support_calls: u32,

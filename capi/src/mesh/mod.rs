@@ -1,4 +1,4 @@
-//! The C ABI of the mesh layer: `include/qdist_mesh.h`, generated from this module by `make header`.
+//! The C ABI of the mesh layer: `include/qdist_mesh.h`, generated from this module by `./x header`.
 //!
 //! * [`model`]: meshes from arrays, what is wrong with them, and their mass.
 //! * [`pair`]: two of them: collision, distance, contacts.

@@ -80,7 +80,7 @@ pub struct qdist_mesh_mass {
 gaps!(qdist_mesh_mass);
 
 /// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
-/// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`make figures`).
+/// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`./x figures`).
 ///
 /// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
 /// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
@@ -136,7 +136,7 @@ fn from_model(error: ModelError) -> (qdist_status, Option<usize>) {
 }
 
 /// Makes another mesh of the same triangles, with convex pieces inside of it from which depth queries prove lower bounds; both meshes of a pair
-/// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`make figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
+/// need them. Without, `lower` is 0. Allocates; about a second for 3,000 triangles (`./x figures`). QDIST_ERROR_MESH_NOT_SOLID if there is no inside,
 /// rounding cannot tell it, or a coordinate is above 1e50.
 ///
 /// Status: MESH_NOT_SOLID (mesh).

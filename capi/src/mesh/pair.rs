@@ -213,7 +213,7 @@ pub extern "C" fn qdist_mesh_pair_collides(
 }
 
 /// The distance of the surfaces. A body inside another one has a positive distance, too: qdist_mesh_pair_collides tells. Some 20
-/// microseconds (`make figures`), and less where the pose has changed little.
+/// microseconds (`./x figures`), and less where the pose has changed little.
 ///
 /// Status: those of a pose (pose).
 #[unsafe(no_mangle)]

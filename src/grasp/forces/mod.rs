@@ -24,8 +24,7 @@ pub struct ForceOptions<T> {
     pub relative: T,
     /// Larger forces are of no interest: the search ends when the least size is known to be above. Default: none.
     pub limit: T,
-    /// The most calls of the support function, beside 13 to 19 at the beginning; twice as many where a search from what is known ends without
-    /// an answer. Default: 1000.
+    /// The most steps (see [`Forces::iterations`]); twice as many where a search from what is known ends without an answer. Default: 1000.
     pub iterations: u32,
 }
 
@@ -100,7 +99,7 @@ pub struct Forces<T> {
     pub direction: Vector<T, 6>,
     /// |sum of the shares + external wrench|, in the unit of wrenches: how far the shares are from equilibrium.
     pub residual: T,
-    /// Calls of the support function, those at the beginning not counted.
+    /// Steps of the search: calls of the wrench set's support function, but for those at the beginning and those that prove the bracket.
     pub iterations: u32,
     /// Why a contribution gave no point, with outcome `SupportFailed`.
     pub failure: Option<Failure>,

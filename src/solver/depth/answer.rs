@@ -25,7 +25,7 @@ pub struct Depth<T, const N: usize = 3> {
     pub point_b: Vector<T, N>,
     /// Affine dimension of the cores' difference, as far as it was found out.
     pub dimension: usize,
-    /// Steps of all plans: directions along which A - B was asked for one point more to go on with.
+    /// Steps of all plans, as of [`Answer::iterations`]: points of A - B that a plan asked for to go on with.
     pub iterations: u32,
     /// Calls of the support function of the body that was asked more often: of both, unless one alone had to be measured because it does not
     /// know its extent.

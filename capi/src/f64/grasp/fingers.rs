@@ -3,8 +3,8 @@
 //! A finger as a whole: up to four contacts that share their joints, whose torques have limits. What it can exert is the sum of its
 //! contacts' wrenches over all contact forces (f_1, ..., f_k) within friction cones, force caps and |sum of J_i^T f_i| <= limits, joint by
 //! joint; with QDIST_FORCE_MODEL_ACTIVE only those that the joints make at all contacts together. Its support function is a small convex
-//! program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`make figures`),
-//! with up to 27 KB of stack in double (`make stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
+//! program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`./x figures`),
+//! with up to 27 KB of stack in double (`./x stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
 
 use super::super::super::grasp::{force_model, from_grasp, norm as checked_norm, qdist_force_model, qdist_norm};
 use super::super::super::numbers::finite;
@@ -125,8 +125,8 @@ impl Wrenches for qdist_finger_wrenches_f64 {
 /// qdist_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
 /// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
 ///
-/// 5 microseconds where no limit counts; a millisecond or more, with 69 KB of stack in double, where there are limits and several contacts (`make
-/// figures`, `make stack`).
+/// 5 microseconds where no limit counts; a millisecond or more, with 69 KB of stack in double, where there are limits and several contacts (`./x
+/// figures`, `./x stack`).
 ///
 /// Status: ARGUMENT (model, or count is 0), CAPACITY (count is above 4), FRAME (frame), TORQUE_LIMIT (limits), TOLERANCE (rank_tolerance); of a
 /// contact, as of qdist_primitives; CONTACT_JACOBIAN also where its joints are not those of the first.

@@ -1,7 +1,7 @@
 //! CONTACT FORCES
 //!
 //! The smallest contact forces that resist one given wrench: how a controller distributes a load. Some 30 microseconds for four
-//! contacts (`make figures`), no solver and no memory but the stack, 16 KB in double (`make stack`). Size is measured in force caps: 1 is the caps
+//! contacts (`./x figures`), no solver and no memory but the stack, 16 KB in double (`./x stack`). Size is measured in force caps: 1 is the caps
 //! themselves.
 
 use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
@@ -22,7 +22,7 @@ use qdist::support::Failure;
 pub struct qdist_force_options_f64 {
     /// sizeof(qdist_force_options_f64).
     pub struct_size: u32,
-    /// The most calls of the support function, beside some 20 at the beginning; 0: 1000. With a memory twice as many at most.
+    /// The most steps (see `iterations` of qdist_forces); 0: 1000. With a memory twice as many at most.
     pub max_iterations: u32,
     /// The gap upper - lower asked for, relative to `upper`; 0: 1e-9 (float: 1e-3).
     pub relative: f64,
@@ -67,7 +67,7 @@ pub struct qdist_forces_f64 {
     pub direction: [f64; 6],
     /// |sum of the shares + external wrench|: how far the shares are from equilibrium. The bracket is that of what they exert.
     pub residual: f64,
-    /// Calls of the support function, those at the beginning not counted.
+    /// Steps of the search: calls of the wrench set's support function, but for those at the beginning and those that prove the bracket.
     pub iterations: u32,
     /// QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
     pub callback_code: i32,

@@ -1,7 +1,7 @@
 //! GRADIENTS
 //!
 //! How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
-//! Newton's method, in some 10 to 100 microseconds (`make figures`); where d has no gradient there, `kink` says why.
+//! Newton's method, in some 10 to 100 microseconds (`./x figures`); where d has no gradient there, `kink` says why.
 
 use super::super::super::grasp::{all_of, kink, qdist_kink};
 use super::super::super::layout::{gaps, versioned};
