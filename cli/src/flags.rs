@@ -20,6 +20,12 @@ pub fn seconds(text: &str) -> Result<Duration, Trouble> {
     found.ok_or("not a number of seconds from 0.001 to 86400".into())
 }
 
+/// A count from LEAST to MOST; 1e6 is one, too.
+pub fn count<const LEAST: u32, const MOST: u32>(text: &str) -> Result<u32, Trouble> {
+    let found = within(text, |x| x.fract() == 0.0 && (f64::from(LEAST)..=f64::from(MOST)).contains(&x));
+    found.map(|x| x as u32).ok_or(format!("not a whole number from {LEAST} to {MOST}"))
+}
+
 fn within(text: &str, fits: impl Fn(f64) -> bool) -> Option<f64> {
     text.parse().ok().filter(|x| fits(*x))
 }
@@ -60,5 +66,9 @@ mod tests {
             assert!(seconds(text).is_err(), "{text}");
         }
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        for text in ["", "x", "nan", "inf", "-1", "0", "1.5", "1001", "1e9", "1e999"] {
+            assert_eq!(count::<1, 1000>(text).unwrap_err(), "not a whole number from 1 to 1000", "{text}");
+        }
+        assert_eq!((count::<1, 1000>("1"), count::<0, 1000>("1e3")), (Ok(1), Ok(1000)));
     }
 }

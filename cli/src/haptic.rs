@@ -19,11 +19,11 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-use clap::{Args, value_parser};
+use clap::Args;
 
 use crate::mesh::input::Kind;
 use crate::mesh::{bodies, read};
-use crate::{Trouble, written};
+use crate::{Trouble, flags, written};
 
 /// What a tick may take.
 const TICK: Duration = Duration::from_millis(1);
@@ -142,7 +142,7 @@ pub struct Request {
     #[arg(long, default_value = "disp")]
     metric: Kind,
     /// Ticks of the curve, ten millions at most
-    #[arg(long, value_name = "N", default_value = "5000", value_parser = value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value = "5000", value_parser = flags::count::<1, 10_000_000>)]
     #[arg(allow_negative_numbers = true)]
     ticks: u32,
     /// A tick a millisecond, not as fast as they can: otherwise the background falls behind

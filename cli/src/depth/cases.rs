@@ -41,6 +41,8 @@ pub struct Placed {
 pub struct Case {
     pub id: String,
     pub bodies: [Placed; 2],
+    /// The lines of the file where the bodies begin.
+    pub lines: [usize; 2],
     pub depth: f64,
     pub lower: f64,
     pub upper: f64,
@@ -120,7 +122,8 @@ impl<'a> Words<'a> {
     }
 
     fn case(&mut self, id: &str) -> Result<Case, Trouble> {
-        let bodies = [self.placed()?, self.placed()?];
+        let [(a, first), (b, second)] = [self.placed()?, self.placed()?];
+        let (bodies, lines) = ([a, b], [first, second]);
         self.expect("T")?;
         let [depth, lower, upper, size, x, y, z] = self.numbers("the reference")?;
         if let Some(bad) = [depth, lower, upper].iter().find(|x| !x.is_finite()) {
@@ -133,11 +136,13 @@ impl<'a> Words<'a> {
         if normal.is_some_and(|n| !((n.norm() - 1.0).abs() < 1e-3)) {
             return Err(format!("the normal ({x}, {y}, {z}) is no unit vector, nor nan"));
         }
-        Ok(Case { id: id.to_string(), bodies, depth, lower, upper, size, normal })
+        Ok(Case { id: id.to_string(), bodies, lines, depth, lower, upper, size, normal })
     }
 
-    fn placed(&mut self) -> Result<Placed, Trouble> {
+    /// A body, and the line where it begins.
+    fn placed(&mut self) -> Result<(Placed, usize), Trouble> {
         self.expect("S")?;
+        let line = self.line;
         let kind = self.next("a shape's type")?.to_string();
         let count: usize = self.number("the count of a shape's numbers")?;
         let count = match NUMBERS.iter().find(|(name, _)| *name == kind) {
@@ -151,7 +156,7 @@ impl<'a> Words<'a> {
         let numbers = (0..count).map(|_| self.number("a shape's numbers")).collect::<Result<_, _>>()?;
         self.expect("P")?;
         let (rotation, translation) = (self.numbers("a rotation")?, self.numbers("a translation")?);
-        Ok(Placed { shape: Shape { kind, numbers }, rotation, translation })
+        Ok((Placed { shape: Shape { kind, numbers }, rotation, translation }, line))
     }
 }
 
@@ -203,7 +208,7 @@ mod tests {
     fn a_case_is_read() {
         let [case] = parse(CASE).unwrap().try_into().unwrap();
         assert_eq!((case.id.as_str(), case.family().as_str(), case.depth), ("one", "sphere-hull1", -1.0));
-        assert_eq!((case.bodies[1].translation, case.normal), ([1.0, 2.0, 3.0], None));
+        assert_eq!((case.bodies[1].translation, case.normal, case.lines), ([1.0, 2.0, 3.0], None, [1, 1]));
         assert_eq!(case.bodies[1].shape.points::<f64>(), [[0.25, 0.0, 0.0]]);
     }
 

@@ -31,7 +31,7 @@ direction from A to B, nan where it is not known.";
 /// Depths of convex pairs from case files, beside their references
 ///
 /// A table of the families of shapes: how many brackets contradict their reference, how many are as narrow as asked for, how many normals are
-/// within 1e-3 of the reference's, and time, points and facets of the median. The exit code is 1 when a bracket is wrong.
+/// within 1e-3 of the reference's, and time, steps and facets of the median. The exit code is 1 when a bracket is wrong.
 #[derive(Args, Clone, Debug, PartialEq)]
 #[command(after_help = FILES)]
 pub struct Request {
@@ -40,7 +40,7 @@ pub struct Request {
     /// In single precision
     #[arg(long)]
     f32: bool,
-    /// The tolerance, in units of the depth [default: 1e-6, with --f32 1e-4]; with 0 for both, as narrow as rounding and 50,000 points let it
+    /// The tolerance, in units of the depth [default: 1e-6, with --f32 1e-4]; with 0 for both, as narrow as rounding and 50,000 steps let it
     #[arg(long, value_name = "R", value_parser = flags::tolerance_or_none, allow_negative_numbers = true)]
     relative: Option<f64>,
     /// The tolerance, in units of the case's size [default: 1e-12, with --f32 1e-5]
@@ -106,17 +106,17 @@ fn solve_all<T: Real>(request: &Request, cases: &[Case]) -> Result<Vec<Found>, T
     let tolerances = (request.relative.unwrap_or(relative), request.absolute.unwrap_or(absolute));
     let mut memory = Box::new(Workspace::<T, 3, 256, 512>::new());
     let mut solver = memory.solver();
-    let one = |case| solve(&mut solver, case, tolerances).map_err(|trouble| format!("case {}: {trouble}", case.id));
-    cases.iter().map(one).collect()
+    cases.iter().map(|case| solve(&mut solver, case, tolerances)).collect()
 }
 
 fn solve<T: Real>(solver: &mut Solver<'_, T, 3>, case: &Case, tolerances: (f64, f64)) -> Result<Found, Trouble> {
     let points = case.bodies.each_ref().map(|b| b.shape.points::<T>());
     let mut words = points.each_ref().map(|p| vec![0; graph_len(p.len())]);
     let [left, right] = &mut words;
-    let a = prepared(&case.bodies[0].shape, &points[0], left)?;
-    let b = prepared(&case.bodies[1].shape, &points[1], right)?;
-    let (a, b) = (case.bodies[0].body(&*a)?, case.bodies[1].body(&*b)?);
+    let at = |i: usize| move |trouble| format!("line {}: case {}: {trouble}", case.lines[i], case.id);
+    let a = prepared(&case.bodies[0].shape, &points[0], left).map_err(at(0))?;
+    let b = prepared(&case.bodies[1].shape, &points[1], right).map_err(at(1))?;
+    let (a, b) = (case.bodies[0].body(&*a).map_err(at(0))?, case.bodies[1].body(&*b).map_err(at(1))?);
     let (relative, absolute) = (T::of(tolerances.0), T::of(tolerances.1 * case.size));
     let options = Options { relative, absolute, ..Options::default() };
     let depth = solver.depth(&a, &b, &options).to_f64();
@@ -197,14 +197,14 @@ fn table(out: &mut dyn Write, file: &Path, request: &Request, cases: &[Case], fo
     writeln!(
         out,
         "  {:22} {:>5} {:>9} {:>9} {:>9} {:>7} {:>7}",
-        "family", "cases", "us least", "median", "most", "points", "facets"
+        "family", "cases", "us least", "median", "most", "steps", "facets"
     )?;
     for (family, mut list) in families {
         list.sort_by(|a, b| a.time.total_cmp(&b.time));
         let [least, middle, most] = [0, list.len() / 2, list.len() - 1].map(|i| list[i]);
-        let (points, facets) = (middle.depth.iterations, middle.depth.facets);
+        let (steps, facets) = (middle.depth.iterations, middle.depth.facets);
         let times = format!("{:9.2} {:9.2} {:9.2}", least.time, middle.time, most.time);
-        writeln!(out, "  {family:22} {:5} {times} {points:7} {facets:7}", list.len())?;
+        writeln!(out, "  {family:22} {:5} {times} {steps:7} {facets:7}", list.len())?;
     }
     Ok(())
 }
@@ -218,7 +218,7 @@ fn one(out: &mut dyn Write, case: &Case, found: &Found) -> io::Result<()> {
     let (under, over) = (d.lower - case.depth, d.upper - case.depth);
     writeln!(
         out,
-        "  {}: {}; {outcome}, depth {:e}, bracket {under:+.1e} {over:+.1e} of it, size {:.1e}, {} points, {} facets",
+        "  {}: {}; {outcome}, depth {:e}, bracket {under:+.1e} {over:+.1e} of it, size {:.1e}, {} steps, {} facets",
         case.id,
         faults.join(", "),
         case.depth,
@@ -257,6 +257,11 @@ mod tests {
         csv(&mut lines, &cases, &found).unwrap();
         let lines = String::from_utf8(lines).unwrap();
         assert!(lines.lines().all(|line| line.split(',').count() == HEADER.split(',').count()));
+        cases[1].bodies[1].shape.numbers[0] = -1.0;
+        let told = solve_all::<f64>(&request("a.txt"), &cases[1..2]).err().unwrap();
+        let says = format!("line {}: case {}: box: a size of the shape", cases[1].lines[1], cases[1].id);
+        assert!(told.starts_with(&says) && cases[1].lines[0] < cases[1].lines[1], "{told}");
+        cases.truncate(1);
         (cases[0].lower, cases[0].upper) = (2.0 * cases[0].depth, 2.0 * cases[0].depth);
         assert!(!solve_all::<f64>(&request("a.txt"), &cases).unwrap()[0].right);
     }

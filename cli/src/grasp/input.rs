@@ -664,7 +664,7 @@ mod tests {
             ("0.5", "0.5, \"mus\": -0.1", "grasp 0, contact 0: `mus` is -0.1; it must be a number, 0 or more"),
             ("}]}", "}], \"refs\": {\"set\": \"W\"}}", "grasp 0: `refs` is {\"set\":\"W\"}; it must be a list of refs"),
             (r#"[0, 0, 1]"#, r#"[0, 1]"#, "grasp 0, contact 0: `p` is [0,1]; it must be a list of 3 numbers"),
-            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0: `p[1]` is missing; it must be a number"),
+            (r#"[0, 0, 1]"#, r#"[0, null, 1]"#, "grasp 0, contact 0: `p[1]` is null; it must be a number"),
             (r#"[0, 0, -1]"#, r#"[0, 0, -2]"#, "grasp 0, contact 0: `n` is [0,0,-2]: the normal is not a unit vector"),
             (r#""p""#, r#""_p""#, "grasp 0, contact 0: `p` is missing; it must be a list of 3 numbers"),
             ("0.5", "-0.5, \"type\": \"hard\"", "grasp 0, contact 0: `mu` is -0.5; it must be a number, 0 or more"),

@@ -27,6 +27,9 @@ pub struct Field<'a> {
     name: Option<String>,
 }
 
+/// The value of a field that is not there. (What is there may be null, too.)
+static MISSING: Value = Value::Null;
+
 /// What is quoted of a value at most, in letters.
 const QUOTED: usize = 60;
 
@@ -37,11 +40,12 @@ impl<'a> Field<'a> {
     }
 
     pub fn get(&self, key: &str) -> Field<'a> {
-        let value = self.value.get(key).unwrap_or(&Value::Null);
+        let value = self.value.get(key).unwrap_or(&MISSING);
         let name = self.name.as_ref().map_or(key.to_string(), |name| format!("{name}.{key}"));
         Field { value, owner: self.owner.clone(), name: Some(name) }
     }
 
+    /// Is nothing there, or null, which says as much?
     pub fn is_missing(&self) -> bool {
         self.value.is_null()
     }
@@ -58,7 +62,7 @@ impl<'a> Field<'a> {
 
     /// The value, or its beginning.
     fn found(&self) -> String {
-        if self.value.is_null() {
+        if std::ptr::eq(self.value, &MISSING) {
             return "missing".into();
         }
         let text = self.value.to_string();
@@ -211,6 +215,10 @@ mod tests {
         assert_eq!(told, "grasp 0: `p` is [0,\"x\",1]; it must be a list of 2 numbers");
         let told = field.get("n").vector::<3>().unwrap_err();
         assert_eq!(told, "grasp 0: `n` is missing; it must be a list of 3 numbers");
+        let nothing = serde_json::json!({"t": [0, null], "n": null});
+        let told = |key: &str| Field::of(&nothing, "").get(key).vector::<2>().unwrap_err();
+        assert_eq!(told("t"), "`t[1]` is null; it must be a number");
+        assert_eq!(told("n"), "`n` is null; it must be a list of 2 numbers");
         let told = field.get("q").get("kind").must::<()>("ball").unwrap_err();
         assert_eq!(told, "grasp 0: `q.kind` is \"bal\"; it must be ball");
         let told = field.get("long").number().unwrap_err();

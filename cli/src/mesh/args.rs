@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum, value_parser};
+use clap::{Args, ValueEnum};
 use qdist::mesh::certificate::Effort;
 use qdist::nalgebra::Isometry3;
 
+use crate::flags;
 use crate::mesh::input::{self, Kind};
 
 /// Where the table's three pairs are, from the project's root.
@@ -37,7 +38,7 @@ pub struct Request {
     /// The queries of a file, of which more is told below
     #[arg(long, value_name = "FILE.json")]
     queries: Option<PathBuf>,
-    /// The paper's Table I beside ours; of ../shared/data/meshes unless --queries says otherwise
+    /// The paper's Table I beside ours; of ../shared/data/meshes, which is no part of the project, unless --queries says otherwise
     #[arg(long)]
     table1: bool,
     /// Where A is in the frame of B, x_B = R x_A + t, |q| = 1 within 1e-3; as often as you like
@@ -54,7 +55,7 @@ pub struct Request {
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
     /// Draw N contact samples of every pair first, a million at most; the 6 nearest to a query are seeds too
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = flags::count::<0, 1_000_000>)]
     #[arg(allow_negative_numbers = true)]
     pub samples: u32,
     /// Nothing but CSV on the standard output
@@ -114,7 +115,6 @@ fn pose(text: &str) -> Result<Isometry3<f64>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flags;
 
     fn parse(line: &str) -> Result<Request, clap::Error> {
         flags::parse(line)
@@ -165,6 +165,7 @@ mod tests {
             let numbers = ["nan", "inf", "-1", "0.5", "99999999999999999999", "x"];
             flags::refuses::<Request>("--queries q", flag, &numbers);
         }
-        assert!(parse("--queries q --samples 1000001").unwrap_err().to_string().contains("--samples"));
+        flags::refuses::<Request>("--queries q", "samples", &["1000001", "1e7", "1e9"]);
+        assert_eq!(parse("--queries q --samples 1e5").unwrap().samples, 100_000);
     }
 }

@@ -30,7 +30,13 @@ use input::Query;
 fn queries(source: &Source) -> Result<Vec<Query>, String> {
     match source {
         Source::File(file) => input::queries(file),
-        Source::Table1(file) => table1::select(input::queries(file)?),
+        Source::Table1(file) => {
+            let queries = input::queries(file).map_err(|trouble| match file.exists() {
+                true => trouble,
+                false => format!("{trouble}; {}", table1::WHENCE),
+            })?;
+            table1::select(queries)
+        }
         Source::Pair([a, b], poses) => {
             let query = |(i, pose)| Query::new(format!("pose{i}"), a.clone(), b.clone(), pose);
             Ok(poses.iter().copied().enumerate().map(query).collect())

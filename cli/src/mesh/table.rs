@@ -80,11 +80,16 @@ pub fn summary(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
         let certified = rows.iter().filter(|r| r.lower >= 0.95 * r.upper).count();
         let ms: Vec<f64> = rows.iter().map(|r| r.ns as f64 / 1e6).collect();
         let (kind, count, known) = (kind.name(), rows.len(), ratios.len());
-        let (near, certified) = (format!("{near}/{known}"), format!("{certified}/{count}"));
+        let certified = format!("{certified}/{count}");
+        // (Where nothing is known, nothing was compared.)
+        let [near, worst] = match known {
+            0 => ["-".into(), "-".into()],
+            _ => [format!("{near}/{known}"), format!("{worst:.4}")],
+        };
         let [median, late] = [0.5, 0.9].map(|share| quantile(&ms, share));
         writeln!(
             out,
-            "{group:12} {kind:6} {count:>7} {near:>10} {worst:>10.4} {certified:>13} {median:>10.3} {late:>10.3}"
+            "{group:12} {kind:6} {count:>7} {near:>10} {worst:>10} {certified:>13} {median:>10.3} {late:>10.3}"
         )?;
     }
     Ok(())
@@ -96,4 +101,32 @@ pub fn quantile(list: &[f64], share: f64) -> f64 {
     list.sort_by(f64::total_cmp);
     let last = list.len().saturating_sub(1);
     list.get((last as f64 * share).round() as usize).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::answer::ask;
+    use crate::mesh::input::Query;
+    use qdist::mesh::{DepthOptions, DepthSolver, Model};
+    use qdist::nalgebra::Isometry3;
+
+    /// Where nothing is known there is nothing to compare, and no quotient of zeros.
+    #[test]
+    fn a_summary_of_what_is_not_known() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let body = Model::new(&corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
+        let query = Query::new("one".into(), "a".into(), "b".into(), Isometry3::translation(0.0, 0.0, 0.9));
+        let mut row = ask(&mut DepthSolver::new(&body, &body), &query, Kind::Disp, &DepthOptions::default(), None);
+        let told = |row: &Row| {
+            let mut text = Vec::new();
+            summary(&mut text, std::slice::from_ref(row)).unwrap();
+            let text = String::from_utf8(text).unwrap();
+            let last = text.lines().last().unwrap().split_whitespace().skip(2).take(3).collect::<Vec<_>>().join(" ");
+            last
+        };
+        assert_eq!(told(&row), "1 - -");
+        row.known.best = Some(row.upper);
+        assert_eq!(told(&row), "1 1/1 1.0000");
+    }
 }

@@ -36,6 +36,11 @@ The paper's times are averages on a PC of 2007, for poses and an implementation 
 bounds are. Its meshes are not available either: ours are re-creations with the same numbers of triangles. So the numbers of triangles compare, the
 times do only in order of magnitude (a core of today is some five to ten times faster), and the quality does not. Ours are medians over the file's queries.";
 
+/// Where the queries come from, for who has none.
+pub const WHENCE: &str = "\
+the pairs of Table I (lshape torusknot, pawn cad, hammer bumpysphere) are no part of the project: they lie beside it, in ../shared/data/meshes; \
+--queries FILE.json names another file of queries about meshes of these names";
+
 impl Column {
     fn has(&self, query: &Query) -> bool {
         let stem = |file: &std::path::Path| file.file_stem().map(|s| s.to_string_lossy().to_string());

@@ -2,11 +2,13 @@
 //!
 //! Vertices are the file's, in double precision where the format has it, and polygons become fans about their first corner. Nothing is
 //! repaired, but for STL: its triangles have no common vertices, so corners with equal coordinates become one. The groups of an
-//! OBJ file and the solids of an STL file are one mesh, and normals, colours and textures are not read.
+//! OBJ file and the solids of an STL file are one mesh, and normals, colours and textures are not read. Whatever else a mesh has no place for (points,
+//! lines, curves, what is not known) is left out, and told on the error output with its count.
 //!
 //! What is wrong is told with its line, or in binary files with its byte; and what a mesh cannot be made of (indices of no vertex, coordinates that
 //! are not finite) is refused here, where the line is known.
 
+mod left_out;
 mod obj;
 mod off;
 mod ply;
@@ -17,27 +19,36 @@ use std::path::Path;
 use qdist::mesh::MAX_COORDINATE;
 
 use crate::Trouble;
+use left_out::LeftOut;
 
 /// Vertices and triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
     pub vertices: Vec<[f64; 3]>,
     pub triangles: Vec<[u32; 3]>,
+    /// What else the file has.
+    pub left_out: LeftOut,
 }
 
 impl Triangles {
     /// A polygon as a fan; points and lines are no triangles.
     fn push_polygon(&mut self, corners: &[u32]) {
-        if let [first, rest @ ..] = corners {
-            self.triangles.extend(rest.windows(2).map(|w| [*first, w[0], w[1]]));
+        match corners {
+            [first, rest @ ..] if rest.len() > 1 => {
+                self.triangles.extend(rest.windows(2).map(|w| [*first, w[0], w[1]]));
+            }
+            _ => self.left_out.faces += 1,
         }
     }
 }
 
-/// Reads a file. The trouble names it, and the line or the byte.
+/// Reads a file. The trouble names it, and the line or the byte. What is left out is told on the error output.
 pub fn mesh(file: &Path) -> Result<Triangles, Trouble> {
     let name = file.display();
     let bytes = std::fs::read(file).map_err(|e| format!("{name}: {e}"))?;
+    if bytes.is_empty() {
+        return Err(format!("{name}: the file is empty"));
+    }
     let ending = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let read = match ending.as_str() {
         "obj" => obj::read(&bytes),
@@ -46,17 +57,30 @@ pub fn mesh(file: &Path) -> Result<Triangles, Trouble> {
         "off" => off::read(&bytes),
         _ => Err("the name ends neither with .obj nor .stl, .ply or .off".into()),
     };
-    match read {
-        Ok(mesh) if mesh.triangles.is_empty() => {
-            Err(format!("{name}: there are no triangles in it ({} vertices)", mesh.vertices.len()))
-        }
-        read => read.map_err(|trouble| format!("{name}: {trouble}")),
+    let mesh = read.map_err(|trouble| format!("{name}: {trouble}"))?;
+    let Triangles { vertices, triangles, left_out } = &mesh;
+    let rest = if left_out.is_nothing() { String::new() } else { format!("left out: {left_out}") };
+    if triangles.is_empty() {
+        let count = vertices.len() + left_out.vertices;
+        let rest = if rest.is_empty() { rest } else { format!("; {rest}") };
+        return Err(format!("{name}: there are no triangles in it (vertices: {count}{rest})"));
     }
+    if !rest.is_empty() {
+        eprintln!("{name}: {rest}");
+    }
+    Ok(mesh)
 }
 
 /// The text of a file whose names need not be in UTF-8; a mark at the beginning is no part of it.
 fn text(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
     String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
+}
+
+/// Where something is wrong, and what is there.
+fn at_line(bytes: &[u8], line: usize) -> String {
+    let content = bytes.split(|&c| c == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
+    let content: String = String::from_utf8_lossy(content).trim().chars().take(60).collect();
+    if content.is_empty() { format!("line {line}, which is empty") } else { format!("line {line}, `{content}`") }
 }
 
 /// The first three numbers of a line.
@@ -91,6 +115,7 @@ mod tests {
         Triangles {
             vertices: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 0.0], [0.1, 0.0, -1.0]],
             triangles: vec![[0, 1, 2], [0, 2, 3], [1, 0, 4]],
+            left_out: LeftOut::default(),
         }
     }
 
@@ -107,11 +132,16 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("qdist_read_{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         for (name, content, says) in [
-            ("a.obj", "", "there are no triangles in it (0 vertices)"),
-            ("b.OBJ", "v 0 0 0\n", "there are no triangles in it (0 vertices)"),
+            ("a.obj", "", "the file is empty"),
+            (
+                "b.OBJ",
+                "v 0 0 0\nv 1 0 0\nl 1 2\n",
+                "there are no triangles in it (vertices: 2; left out: 2 vertices of no face, 1 of `l`)",
+            ),
             ("c.obj", "v 0 0 zero\n", "line 1: `zero` is no number"),
-            ("d.off", "OFF\n1 0 0\n0 0 0\n", "there are no triangles in it (1 vertices)"),
-            ("e.stl", "solid x\nendsolid x\n", "there are no triangles in it (0 vertices)"),
+            ("d.off", "OFF\n1 0 0\n0 0 0\n", "there are no triangles in it (vertices: 1)"),
+            ("e.stl", "solid x\nendsolid x\n", "there are no triangles in it (vertices: 0)"),
+            ("f.ply", "", "the file is empty"),
         ] {
             let file = folder.join(name);
             std::fs::write(&file, content).unwrap();

@@ -1,5 +1,7 @@
-//! OBJ: the lines `v` and `f`; vertices that no face has are left out, and the others numbered as faces come to them.
+//! OBJ: the lines `v` and `f`; vertices that no face has are left out, and the others numbered as faces come to them. What says how things are named,
+//! grouped or look is passed over; any other line is left out, and counted.
 
+use super::left_out::LeftOut;
 use super::{Triangles, coordinates, text};
 use crate::Trouble;
 
@@ -9,7 +11,11 @@ struct Lines {
     vertices: Vec<[f64; 3]>,
     /// Corners, counted from 0, and the line: a face may come before its vertices.
     faces: Vec<(Vec<usize>, usize)>,
+    left_out: LeftOut,
 }
+
+/// What says nothing of a mesh's shape.
+const LOOKS: &str = "vt vn vp g o s mg usemtl mtllib usemap maplib lod bevel c_interp d_interp shadow_obj trace_obj";
 
 impl Lines {
     fn read(&mut self, statement: &str, line: usize) -> Result<(), Trouble> {
@@ -20,6 +26,7 @@ impl Lines {
                 let corners = words.map(|word| self.corner(word)).collect::<Result<_, _>>()?;
                 self.faces.push((corners, line));
             }
+            Some(word) if LOOKS.split(' ').all(|known| known != word) => self.left_out.add(word, 1),
             _ => {}
         }
         Ok(())
@@ -40,15 +47,16 @@ impl Lines {
     }
 
     fn mesh(self) -> Result<Triangles, Trouble> {
-        let mut mesh = Triangles::default();
+        let mut mesh = Triangles { left_out: self.left_out, ..Triangles::default() };
         let count = self.vertices.len();
         let mut numbers: Vec<Option<u32>> = vec![None; count];
         for (face, line) in self.faces {
             if let Some(index) = face.iter().find(|&&index| index >= count) {
                 return Err(format!("line {line}: vertex {} is not there: there are {count}", index.saturating_add(1)));
             }
-            // Points and lines are no triangles.
+            // (The vertices of points and lines have no number.)
             if face.len() < 3 {
+                mesh.left_out.faces += 1;
                 continue;
             }
             let number = |&index: &usize| {
@@ -60,6 +68,7 @@ impl Lines {
             let corners: Vec<u32> = face.iter().map(number).collect();
             mesh.push_polygon(&corners);
         }
+        mesh.left_out.vertices = count - mesh.vertices.len();
         Ok(mesh)
     }
 }
@@ -89,8 +98,10 @@ mod tests {
     fn groups_are_one_mesh() {
         let file = "# two groups\nmtllib x.mtl\no first\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvn 0 0 1\nv 0.1 0 -1 # the tip\n\
                     g a\nf 1//1 2//1 3//1 4//1\nusemtl m\ng b\ns 1\nf -4 -5 \\\n -1\nl 1 2\n";
-        assert_eq!(read(file.as_bytes()), Ok(expected()));
-        assert_eq!(read(file.replace('\n', "\r\n").as_bytes()), Ok(expected()));
+        let mut expected = expected();
+        expected.left_out.add("l", 1);
+        assert_eq!(read(file.as_bytes()), Ok(expected.clone()));
+        assert_eq!(read(file.replace('\n', "\r\n").as_bytes()), Ok(expected));
         assert_eq!(read(b""), Ok(Triangles::default()));
     }
 
@@ -100,6 +111,14 @@ mod tests {
         let mesh = read(b"v 9 9 9\nf 4 3 2\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 2 4\n").unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
         assert_eq!(mesh.vertices.iter().map(|x| x[0]).collect::<Vec<_>>(), [4.0, 3.0, 2.0]);
+    }
+
+    #[test]
+    fn what_is_left_out_is_counted() {
+        let file = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nvt 0 0\nf 1 2 3\nf 1 2\nf\np 4\np 1\nl 1 2 3\nface 1 2 3\n";
+        let left_out = read(file.as_bytes()).unwrap().left_out;
+        let says = "1 vertex of no face, 2 faces of fewer than three corners, 1 of `face`, 1 of `l`, 2 of `p`";
+        assert_eq!(left_out.to_string(), says);
     }
 
     #[test]

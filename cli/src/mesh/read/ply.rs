@@ -1,11 +1,12 @@
-//! PLY, as text or in numbers: the elements `vertex` (x, y, z) and `face` (a list `vertex_indices`, or `vertex_index`); other elements are passed over.
+//! PLY, as text or in numbers: the elements `vertex` (x, y, z) and `face` (a list `vertex_indices`, or `vertex_index`); other elements are left
+//! out, and counted.
 
 use std::io::Cursor;
 
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, ElementDef, Encoding, Header, Property};
 
-use super::{Triangles, corner, finite};
+use super::{Triangles, at_line, corner, finite};
 use crate::{Trouble, text};
 
 /// Where the elements of a kind begin.
@@ -39,9 +40,7 @@ impl<'a> File<'a> {
             return format!("byte {}: {words}", at.byte);
         }
         let line = error.line().unwrap_or_else(|| text::line(self.bytes, (at.byte as usize).saturating_sub(1)));
-        let content = self.bytes.split(|&c| c == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-        let content: String = String::from_utf8_lossy(content).trim().chars().take(60).collect();
-        format!("line {line}, `{content}`: {words}")
+        format!("{}: {words}", at_line(self.bytes, line))
     }
 
     fn elements(&mut self, header: &Header, of: &ElementDef) -> Result<Vec<DefaultElement>, Trouble> {
@@ -79,7 +78,7 @@ pub fn read(bytes: &[u8]) -> Result<Triangles, Trouble> {
                 }
             }
             "face" => faces = Some((elements, of, begin)),
-            _ => {}
+            _ => mesh.left_out.add(name, elements.len()),
         }
     }
     if !header.elements.contains_key("vertex") {
@@ -191,7 +190,18 @@ mod tests {
             let told = read(whole.replacen(from, to, 1).as_bytes()).unwrap_err();
             assert!(told.starts_with(says) && !told.contains('\n'), "{from} -> {to}: {told}");
         }
-        assert!(read(b"").unwrap_err().starts_with("line 1, ``: Unexpected end of file"));
+        let told = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(told("ply\nformat ascii 1.0\n\nelement vertex 1\n").starts_with("line 3, which is empty: "));
+        assert!(told("ply\nformat ascii 1.0\n").starts_with("line 3, which is empty: Unexpected end of file"));
+    }
+
+    #[test]
+    fn other_elements_are_counted() {
+        let more = "property list uchar int vertex_indices\nelement edge 2\nproperty int a\nproperty int b\n";
+        let head = HEAD.replace("property list uchar int vertex_indices\n", more).replace("face 2", "face 3");
+        let mesh = read(format!("{head}{BODY}2 0 1\n0 1\n1 2\n").as_bytes()).unwrap();
+        assert_eq!(mesh.triangles, expected().triangles);
+        assert_eq!(mesh.left_out.to_string(), "1 face of fewer than three corners, 2 of `edge`");
     }
 
     #[test]

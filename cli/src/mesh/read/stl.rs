@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::io::{Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
 
-use super::{Triangles, finite};
+use super::{Triangles, at_line, finite};
 use crate::{Trouble, text};
 
 /// Bytes before the triangles, and of each.
@@ -62,12 +62,32 @@ pub fn read(mut bytes: Vec<u8>) -> Result<Triangles, Trouble> {
     Ok(joined.mesh)
 }
 
+/// What the library says of text, by its beginning, and what that means.
+const WORDS: [(&str, &str); 8] = [
+    ("vertex f32", "`vertex` and three numbers are expected here"),
+    ("invalid facet", "`facet normal` and three numbers, or `endsolid`, are expected here"),
+    ("expected [\"outer", "`outer loop` is expected here"),
+    ("expected [\"endloop", "`endloop` is expected here, after three vertices"),
+    ("expected [\"endfacet", "`endfacet` is expected here"),
+    ("invalid float", "numbers are expected here"),
+    ("expected finite", "a number is not finite, or too large for single precision"),
+    ("EOF", "the file ends here, within a solid"),
+];
+
+fn meaning(said: &str) -> Trouble {
+    let known = WORDS.iter().find(|(begin, _)| said.starts_with(begin));
+    known.map_or(said, |(_, meaning)| meaning).into()
+}
+
 /// Solid after solid.
 fn in_text(bytes: &[u8]) -> Result<Triangles, Trouble> {
     let mut joined = Joined::default();
     let at = Cell::new(0usize);
     // What was read ends with the line that is wrong.
-    let words = |trouble: String| format!("line {}: {trouble}", text::line(bytes, at.get().saturating_sub(1)));
+    let words = |trouble: String| {
+        let line = text::line(bytes, at.get().saturating_sub(1));
+        format!("{}: {trouble}", at_line(bytes, line))
+    };
     loop {
         // The first line has the name, if there is one, which is not read; the library wants one.
         let rest = &bytes[at.get()..];
@@ -83,7 +103,7 @@ fn in_text(bytes: &[u8]) -> Result<Triangles, Trouble> {
             return Err(words("here is more than the solid".into()));
         }
         for triangle in stl_io::create_stl_reader(&mut solid).map_err(|e| words(e.to_string()))? {
-            let triangle = triangle.map_err(|e| words(e.to_string()))?;
+            let triangle = triangle.map_err(|e| words(meaning(&e.to_string())))?;
             joined.push(&triangle).map_err(words)?;
         }
     }
@@ -183,13 +203,28 @@ mod tests {
     #[test]
     fn trouble_names_the_line() {
         for (from, to, says) in [
-            ("    vertex 1 0 0", "    vertex 1 0", "line 5: vertex f32 f32 f32, got"),
-            ("    vertex 1 0 0", "    vertex 1 zero 0", "line 5: "),
-            ("    vertex 1 0 0", "    vertex 1 inf 0", "line 5: "),
-            ("  outer", "\n  uter", "line 4: expected"),
-            ("  facet normal", "  face normal", "line 2: invalid facet header"),
-            ("endsolid x", "", "line 23: EOF while expecting facet or endsolid"),
-            ("endsolid x", "endsolid x\nfacet normal 0 0 0", "line 24: here is more than the solid"),
+            (
+                "    vertex 1 0 0",
+                "    vertex 1 0",
+                "line 5, `vertex 1 0`: `vertex` and three numbers are expected here",
+            ),
+            ("    vertex 1 0 0", "    vertex 1 zero 0", "line 5, `vertex 1 zero 0`: numbers are expected here"),
+            ("    vertex 1 0 0", "    vertex 1 inf 0", "line 5, `vertex 1 inf 0`: a number is not finite"),
+            (
+                "    vertex 1 0 0",
+                "    vertex 1 1e39 0",
+                "line 5, `vertex 1 1e39 0`: a number is not finite, or too large",
+            ),
+            ("  outer", "\n  uter", "line 4, `uter loop`: `outer loop` is expected here"),
+            ("  endloop", "  vertex 1 0 0\n  endloop", "line 7, `vertex 1 0 0`: `endloop` is expected here"),
+            ("  endfacet", "  end", "line 8, `end`: `endfacet` is expected here"),
+            ("  facet normal", "  face normal", "line 2, `face normal 0 0 0`: `facet normal` and three numbers, or"),
+            ("endsolid x", "", "line 23, which is empty: the file ends here, within a solid"),
+            (
+                "endsolid x",
+                "endsolid x\nfacet normal 0 0 0",
+                "line 24, `facet normal 0 0 0`: here is more than the solid",
+            ),
         ] {
             let told = told(in_lines().replacen(from, to, 1));
             assert!(told.starts_with(says), "{to}: {told}");
