@@ -150,13 +150,13 @@ bench-dq: OUT = out/dq
 bench-dq:
 	$(need)
 	@echo "measuring d_Q; results go to $(OUT)"
-	@$(CARGO) bench --quiet --locked --package qdist-benches --bench dq -- $(if $(QUICK),--quick) $(abspath $(OUT))
+	@$(CARGO) bench --quiet --locked --package qdist-benches --bench dq -- $(if $(QUICK),--quick) "$(abspath $(OUT))"
 
 bench-grasp: OUT = out/grasp
 bench-grasp:
 	$(need)
 	@echo "measuring grasps; results go to $(OUT)"
-	@$(CARGO) bench --quiet --locked --package qdist-benches --bench grasp -- $(if $(QUICK),--quick) $(abspath $(OUT))
+	@$(CARGO) bench --quiet --locked --package qdist-benches --bench grasp -- $(if $(QUICK),--quick) "$(abspath $(OUT))"
 
 bench-pdg: OUT = out/pdg
 bench-pdg:
@@ -164,13 +164,13 @@ bench-pdg:
 	@echo "building FCL's part"
 	@$(CXX) -std=c++17 -O3 -Wall -Wextra $(peer_includes) benches/pdg/fcl.cpp -lfcl -lccd -o $(out)/pdg_fcl
 	@echo "measuring depths of meshes; results go to $(OUT)"
-	@$(CARGO) bench --quiet --locked --package qdist-benches --bench pdg -- $(if $(QUICK),--quick) --fcl $(abspath $(out))/pdg_fcl $(abspath $(OUT))
+	@$(CARGO) bench --quiet --locked --package qdist-benches --bench pdg -- $(if $(QUICK),--quick) --fcl "$(abspath $(out))/pdg_fcl" "$(abspath $(OUT))"
 
 record: OUT = out/record
 record:
 	$(need)
 	@echo "writing every answer to the last bit; the records go to $(OUT)"
-	@$(CARGO) run --quiet --release --locked --package qdist-benches --bin record -- $(if $(PART),--part $(PART)) $(abspath $(OUT))
+	@$(CARGO) run --quiet --release --locked --package qdist-benches --bin record -- $(if $(PART),--part $(PART)) "$(abspath $(OUT))"
 
 record-compare:
 	$(need)

@@ -52,11 +52,20 @@ refused 'A=dir B=dir' record-compare "A=$folder"
 refused 'no folder' record-compare "A=$folder" "B=$folder/nothing"
 refused 'not `now`' demo now
 refused 'does not know OUT' demo OUT=out
+refused 'CARGO_TARGET_DIR' lib "CARGO_TARGET_DIR=$folder/a b"
+refused 'CARGO_TARGET_DIR' lib "CARGO_TARGET_DIR=$folder/it's"
 
 # make takes them from the environment, too.
 export CASES=nofile
 refused 'no file nofile' compare
 unset CASES
+for name in 'a b' "it's" 'a"b' 'a,b' 'a$b' 'a`b' 'a\b' 'a;b' 'a#b'; do
+    refused 'OUT' bench-dq "OUT=$folder/$name"
+    export CARGO_TARGET_DIR="$folder/$name"
+    refused 'CARGO_TARGET_DIR' lib
+    refused 'CARGO_TARGET_DIR' need lib
+    unset CARGO_TARGET_DIR
+done
 
 # What is right reaches make.
 for command in 'compare CASES=tests/data/std_hull8.txt' "record-compare A=$folder B=$folder" 'demo CC=cc' "bench-dq QUICK=1 OUT=$folder/new"; do
@@ -65,6 +74,13 @@ for command in 'compare CASES=tests/data/std_hull8.txt' "record-compare A=$folde
         *'make was called'* | *needs:*) passed=$((passed + 1)) ;;
         *) failed=$((failed + 1)) && echo "./x $command: refused" ;;
     esac
+done
+
+# README tells every command.
+for command in $(./x | sed -n 's/^  \([a-z][a-z-]*\)\(, \([a-z-]*\)\)\{0,1\} .*/\1 \3/p'); do
+    grep -q "^| .*\`./x $command[ \`]" README.md && passed=$((passed + 1)) && continue
+    failed=$((failed + 1))
+    echo "README's commands lack ./x $command"
 done
 
 echo "x_arguments: $passed passed, $failed failed"
