@@ -1077,7 +1077,8 @@ qdist_status qdist_solve6_f64(qdist_solver *solver,
  *
  * All that qdist_depth3 does in space, in the plane: discs, boxes, ellipses, capsules, polygons, half planes, hulls of two bodies, and support
  * functions of your own. The solver is one of dimension 2; for polygons of m and n vertices, m + n vertices and as many facets
- * suffice. Results are those of space, with 0 as the third numbers.
+ * suffice; for two ellipses and the default tolerance 64 and 64 nearly always, 128 and 128 in all of 60,000 random pairs
+ * (`cargo run --release --example memory --features std`). Results are those of space, with 0 as the third numbers.
  *
  * A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
  * way: write { c, -s, s, c } for the cosine and sine that you have. */
