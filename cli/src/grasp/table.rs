@@ -41,11 +41,11 @@ pub fn begin(out: &mut dyn Write, grasp: &Grasp, sets: &Sets) -> io::Result<()> 
     }
     let [passive, active] = [Set::Passive, Set::Active].map(|set| sets.get(set).dimension());
     writeln!(out, "  W has dimension {passive}, W^a {active}")?;
-    let head = ["set", "norm", "dim", "lower", "upper", "outcome", "plan", "points", "ms", "reference", "inside"];
-    let [set, norm, dim, lower, upper, outcome, plan, points, ms, reference, inside] = head;
+    let head = ["set", "norm", "dim", "lower", "upper", "outcome", "plan", "steps", "ms", "reference", "inside"];
+    let [set, norm, dim, lower, upper, outcome, plan, steps, ms, reference, inside] = head;
     writeln!(
         out,
-        "  ref  {set:<3} {norm:<4} {dim:>3}  {lower:>14} {upper:>14}  {outcome:<10} {plan:<9} {points:>7} {ms:>9}  {reference:>14}  {inside:<6}  Q"
+        "  ref  {set:<3} {norm:<4} {dim:>3}  {lower:>14} {upper:>14}  {outcome:<10} {plan:<9} {steps:>7} {ms:>9}  {reference:>14}  {inside:<6}  Q"
     )
 }
 

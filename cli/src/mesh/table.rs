@@ -122,8 +122,7 @@ mod tests {
             let mut text = Vec::new();
             summary(&mut text, std::slice::from_ref(row)).unwrap();
             let text = String::from_utf8(text).unwrap();
-            let last = text.lines().last().unwrap().split_whitespace().skip(2).take(3).collect::<Vec<_>>().join(" ");
-            last
+            text.lines().last().unwrap().split_whitespace().skip(2).take(3).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(told(&row), "1 - -");
         row.known.best = Some(row.upper);
