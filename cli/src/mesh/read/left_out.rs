@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use super::quoted;
+
 /// Kinds of lines that are told by name.
 const TOLD: usize = 5;
 
@@ -20,7 +22,7 @@ pub struct LeftOut {
 impl LeftOut {
     /// So many of this name.
     pub fn add(&mut self, name: &str, count: usize) {
-        *self.others.entry(name.chars().take(20).collect()).or_default() += count;
+        *self.others.entry(quoted(name).chars().take(20).collect()).or_default() += count;
     }
 
     pub fn is_nothing(&self) -> bool {

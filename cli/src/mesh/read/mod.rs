@@ -79,8 +79,13 @@ fn text(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
 /// Where something is wrong, and what is there.
 fn at_line(bytes: &[u8], line: usize) -> String {
     let content = bytes.split(|&c| c == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-    let content: String = String::from_utf8_lossy(content).trim().chars().take(60).collect();
+    let content = quoted(String::from_utf8_lossy(content).trim());
     if content.is_empty() { format!("line {line}, which is empty") } else { format!("line {line}, `{content}`") }
+}
+
+/// What messages say of a text from a file, which may be anything: its beginning, and nothing that a terminal obeys.
+fn quoted(text: &str) -> String {
+    text.chars().take(60).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// The first three numbers of a line.
@@ -88,7 +93,7 @@ fn coordinates<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3],
     let mut x = [0.0; 3];
     for (k, x) in x.iter_mut().enumerate() {
         let word = words.next().ok_or(format!("a vertex has three numbers, here are {k}"))?;
-        *x = word.parse().map_err(|_| format!("`{word}` is no number"))?;
+        *x = word.parse().map_err(|_| format!("`{}` is no number", quoted(word)))?;
     }
     finite(x)
 }
@@ -117,6 +122,12 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 2, 3], [1, 0, 4]],
             left_out: LeftOut::default(),
         }
+    }
+
+    #[test]
+    fn what_is_quoted_is_short_and_plain() {
+        assert_eq!(quoted("1 \u{1b}[2J\t\u{fc}"), "1 \u{fffd}[2J\u{fffd}\u{fc}");
+        assert_eq!(quoted(&"x".repeat(1000)).len(), 60);
     }
 
     #[test]

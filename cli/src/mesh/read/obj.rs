@@ -2,7 +2,7 @@
 //! grouped or look is passed over; any other line is left out, and counted.
 
 use super::left_out::LeftOut;
-use super::{Triangles, coordinates, text};
+use super::{Triangles, coordinates, quoted, text};
 use crate::Trouble;
 
 /// What the lines have said.
@@ -34,7 +34,7 @@ impl Lines {
 
     /// `5`, `5/1`, `5//1`, `5/1/1`, `-1`: the vertex is the first.
     fn corner(&self, word: &str) -> Result<usize, Trouble> {
-        let bad = || format!("`{word}` is no corner of a face");
+        let bad = || format!("`{}` is no corner of a face", quoted(word));
         let numbers: Vec<Option<i64>> = word.split('/').map(|number| number.parse().ok()).collect();
         let fits = numbers.len() <= 3 && word.split('/').zip(&numbers).all(|(word, n)| word.is_empty() || n.is_some());
         let first = numbers.first().copied().flatten().filter(|_| fits).ok_or_else(bad)?;

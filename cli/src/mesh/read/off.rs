@@ -1,7 +1,7 @@
 //! OFF: `OFF` (it may be missing), the numbers of vertices, faces and edges, then coordinates, then polygons: their size, their corners, and perhaps
 //! a colour; one line each.
 
-use super::{Triangles, coordinates, corner, text};
+use super::{Triangles, coordinates, corner, quoted, text};
 use crate::Trouble;
 
 /// What is left of the file, in lines with their numbers; comments and empty lines are left out.
@@ -23,7 +23,7 @@ pub fn read(bytes: &[u8]) -> Result<Triangles, Trouble> {
     }
     let counts: Option<Vec<usize>> = head.split_whitespace().map(|word| word.parse().ok()).collect();
     let Some(&[vertices, faces] | &[vertices, faces, _]) = counts.as_deref() else {
-        return Err(format!("line {number}: `{head}` is not the numbers of vertices, faces and edges"));
+        return Err(format!("line {number}: `{}` is not the numbers of vertices, faces and edges", quoted(head)));
     };
     let mut mesh = Triangles::default();
     for i in 0..vertices {
@@ -46,7 +46,7 @@ fn polygon(line: &str, vertices: usize) -> Result<Vec<u32>, Trouble> {
     let mut words = line.split_whitespace();
     let mut next = |what: &str| {
         let word = words.next().ok_or(format!("the line ends where {what} should be"))?;
-        word.parse::<i64>().map_err(|_| format!("`{word}` is no whole number, as {what} must be"))
+        word.parse::<i64>().map_err(|_| format!("`{}` is no whole number, as {what} must be", quoted(word)))
     };
     let size = next("the size of a face")?;
     if size < 0 {
