@@ -57,6 +57,22 @@ static void everywhere(void (*test)(void)) {
     }
 }
 
+enum { CORNERS = 10 };
+
+/* A random rotation, from a unit quaternion, and directions. */
+static void turn(wide m[9]) {
+    wide q[4], squared;
+    do {
+        squared = 0;
+        for (int i = 0; i < 4; ++i) q[i] = (wide)dice(), squared += q[i] * q[i];
+    } while (squared > 1 || squared < 0.1L);
+    for (int i = 0; i < 4; ++i) q[i] /= sqrtl(squared);
+    const wide w = q[0], x = q[1], y = q[2], z = q[3];
+    const wide rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+                          2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    memcpy(m, rows, sizeof rows);
+}
+
 static void say(const char *what, double lower, wide truth, double upper) {
     printf("%s, mode %d, flushing %d: %.20Lg is not in [%.17g, %.17g]\n", what, mode, flushing, truth, lower, upper);
 }
@@ -79,6 +95,8 @@ int main(void) {
     everywhere(random_boxes_f32);
     everywhere(hulls_and_half_spaces_f64);
     everywhere(hulls_and_half_spaces_f32);
+    everywhere(placed_bodies_f64);
+    everywhere(placed_bodies_f32);
     everywhere(in_the_plane_f64);
     everywhere(in_the_plane_f32);
     everywhere(subnormal_f64);
@@ -322,6 +340,102 @@ static void S(hulls_and_half_spaces)(void) {
         CHECK(status == QDIST_OK);
         c.translation[1] = (REAL)(2 + dice()), c.translation[0] = (REAL)(2 + dice());
         S(holds)("join", &tube, &c, 2 * (wide)ball.radius - (wide)c.translation[0], 2);
+    }
+}
+
+/* A body of each kind, its numbers in `n`. */
+typedef struct {
+    REAL n[3 * CORNERS];
+    S(qdist_sphere) sphere;
+    S(qdist_box) box;
+    S(qdist_capsule) capsule;
+    S(qdist_cylinder) cylinder;
+    S(qdist_cone) cone;
+    S(qdist_ellipsoid) ellipsoid;
+    S(qdist_points) points;
+    int kind;
+    S(qdist_body) body;
+} S(placed);
+
+static void S(place)(S(placed) *p, int kind) {
+    wide m[9];
+    qdist_status status = QDIST_OK;
+    memset(p, 0, sizeof *p);
+    p->kind = kind;
+    for (int i = 0; i < 3 * CORNERS; ++i) p->n[i] = (REAL)(kind == 6 ? dice() : 0.65 + 0.35 * dice());
+    const REAL *n = p->n;
+    switch (kind) {
+        case 0: p->sphere.radius = n[0], status = S(qdist_body_sphere)(&p->body, &p->sphere); break;
+        case 1: memcpy(p->box.half, n, sizeof p->box.half), status = S(qdist_body_box)(&p->body, &p->box); break;
+        case 2: p->capsule.radius = n[0], p->capsule.half_height = n[1], status = S(qdist_body_capsule)(&p->body, &p->capsule); break;
+        case 3: p->cylinder.radius = n[0], p->cylinder.half_height = n[1], status = S(qdist_body_cylinder)(&p->body, &p->cylinder); break;
+        case 4: p->cone.radius = n[0], p->cone.half_height = n[1], status = S(qdist_body_cone)(&p->body, &p->cone); break;
+        case 5: memcpy(p->ellipsoid.semi_axes, n, sizeof p->ellipsoid.semi_axes), status = S(qdist_body_ellipsoid)(&p->body, &p->ellipsoid); break;
+        default: p->points.points = n, p->points.count = CORNERS, p->points.dimension = 3, status = S(qdist_body_points)(&p->body, &p->points);
+    }
+    CHECK(status == QDIST_OK);
+    turn(m);
+    for (int i = 0; i < 9; ++i) p->body.rotation[i] = (REAL)m[i];
+}
+
+/* The support function. */
+static wide S(height)(const S(placed) *p, const wide *u) {
+    const REAL *n = p->n;
+    wide w[3], moved = 0;
+    for (int j = 0; j < 3; ++j) {
+        w[j] = 0;
+        for (int i = 0; i < 3; ++i) w[j] += (wide)p->body.rotation[3 * i + j] * u[i];
+        moved += u[j] * (wide)p->body.translation[j];
+    }
+    const wide across = hypotl(w[0], w[1]), length = sqrtl(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    switch (p->kind) {
+        case 0: return n[0] * length + moved;
+        case 1: return n[0] * fabsl(w[0]) + n[1] * fabsl(w[1]) + n[2] * fabsl(w[2]) + moved;
+        case 2: return n[0] * length + n[1] * fabsl(w[2]) + moved;
+        case 3: return n[0] * across + n[1] * fabsl(w[2]) + moved;
+        case 4: return fmaxl(n[1] * w[2], n[0] * across - n[1] * w[2]) + moved;
+        case 5: return sqrtl(n[0] * w[0] * (n[0] * w[0]) + n[1] * w[1] * (n[1] * w[1]) + n[2] * w[2] * (n[2] * w[2])) + moved;
+        default: break;
+    }
+    wide most = -100;
+    for (int k = 0; k < CORNERS; ++k) most = fmaxl(most, n[3 * k] * w[0] + n[3 * k + 1] * w[1] + n[3 * k + 2] * w[2]);
+    return most + moved;
+}
+
+/* Bodies that were made in the usual environment, deep and shallow: what the reported direction proves is no more than `upper`, and `lower` no more than that; on the
+ * ground the depth is in the bracket. */
+static void S(placed_bodies)(void) {
+    for (int i = 0; i < 400; ++i) {
+        S(placed) a, b;
+        S(qdist_body) ground;
+        S(qdist_depth) depth;
+        qdist_solver *solver;
+        wide u[3], back[3], proved, squared = 0;
+        const int on_ground = i % 2;
+        const wide overlap = i % 3 ? 1e-3L + 0.3L * (wide)dice() * dice() : 1e-3L;
+        S(place)(&a, i / 2 % 7);
+        S(place)(&b, i / 14 % 7);
+        for (int k = 0; k < 3; ++k) u[k] = (REAL)dice(), back[k] = -u[k], squared += u[k] * u[k];
+        const S(qdist_half_space) floor = {{(REAL)u[0], (REAL)u[1], (REAL)u[2]}, (REAL)(overlap * sqrtl(squared) - S(height)(&a, back))};
+        for (int k = 0; k < 3; ++k) b.body.translation[k] = (REAL)(u[k] / squared * (S(height)(&a, u) + S(height)(&b, back) - overlap * sqrtl(squared)));
+        if (on_ground) CHECK(S(qdist_body_half_space)(&ground, &floor) == QDIST_OK);
+        memset(&depth, 0, sizeof depth);
+        depth.struct_size = sizeof depth;
+        enter();
+        qdist_status status = S(qdist_solver_init)(memory, sizeof memory, 3, 64, 128, &solver);
+        status |= S(qdist_depth3)(solver, &a.body, on_ground ? &ground : &b.body, NULL, &depth);
+        leave();
+        CHECK(status == QDIST_OK);
+        if (on_ground) {
+            proved = (S(height)(&a, back) + floor.offset) / sqrtl(squared);
+        } else {
+            squared = 0;
+            for (int k = 0; k < 3; ++k) u[k] = depth.normal[k], back[k] = -u[k], squared += u[k] * u[k];
+            proved = (S(height)(&a, u) + S(height)(&b, back)) / sqrtl(squared);
+        }
+        const wide blur = 1e-18L;
+        CHECK(depth.lower <= proved + blur && proved <= depth.upper + blur);
+        if (!(depth.lower <= proved + blur && proved <= depth.upper + blur)) say(on_ground ? "ground" : "direction", depth.lower, proved, depth.upper);
     }
 }
 

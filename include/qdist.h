@@ -444,8 +444,8 @@ typedef struct {
     uint32_t contains_origin;
 } qdist_set_f64;
 
-/// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
-/// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
+/// For sets that know themselves in twice the precision: writes a point of the core (with the ball of rolling_radius put on, where there is one) that is farthest
+/// along a direction u. Both are exact sums of two vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
 /// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
 typedef int32_t (*qdist_precise_f64)(void *user, const double *direction, double *point);
 

@@ -130,7 +130,7 @@ half spaces: upper, the set's error | solver/depth/half_space/plane.rs | let bey
 half spaces: upper, direction astray | solver/depth/half_space/plane.rs | + @deepest.astray * (anchor.extent + deepest.error) * T::count(2)@; | T::zero()
 half spaces: direction, rounding | solver/depth/half_space/deepest.rs | * T::of(1.01) + @lost@; | T::zero()
 half spaces: direction in two words, rounding | solver/depth/half_space/deepest.rs | error, astray: @lost@ } | T::zero()
-half spaces: a point in two words | solver/depth/half_space/deepest.rs | let error = @size * (T::count(1 << 9) * T::ROUNDOFF * T::ROUNDOFF)@ | T::zero()
+half spaces: a point in two words | solver/depth/half_space/deepest.rs | @a.shape.extents().sum() * (T::count(1 << 10) * T::ROUNDOFF * T::ROUNDOFF)@ | T::zero()
 half spaces: opposite for certain | solver/depth/half_space/plane.rs | let upper = if @told.is_some()@ | true
 half spaces: not opposite for certain | solver/depth/half_space/plane.rs | across > @rounding@) | T::zero()
 

@@ -29,10 +29,6 @@ pub trait Real: RealField + Copy + sealed::Sealed {
     /// The default relative tolerance of a query: 1e-6 in `f64`, 1e-4 in `f32`.
     const RELATIVE_TOLERANCE: Self;
 
-    /// 2^ceil(p/2) + 1 for p bits of mantissa: Veltkamp's constant, which splits a number in two halves whose products are
-    /// exact.
-    const SPLIT: Self;
-
     /// Correctly rounded square root; the argument must not be negative.
     fn root(self) -> Self;
     /// Nearest `f64`, for reports and constants.
@@ -47,6 +43,9 @@ pub trait Real: RealField + Copy + sealed::Sealed {
     fn finite(self) -> bool;
     /// The power of two with the same exponent, for a normal number > 0.
     fn power_of_two(self) -> Self;
+    /// The number rounded to the upper half of its bits (f32: 12 of 24, f64: 26 of 53), to nearest whatever the rounding mode: what that leaves has no more, and
+    /// products of halves are exact.
+    fn upper_half(self) -> Self;
     /// `self` if it is larger or `other` is not a number (unlike `RealField::max`, never a call).
     #[inline(always)]
     fn at_least(self, other: Self) -> Self {
@@ -60,7 +59,7 @@ pub trait Real: RealField + Copy + sealed::Sealed {
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:path, $tolerance:expr, $split:expr, $exponent:expr) => {
+    ($t:ident, $sqrt:path, $tolerance:expr, $half:expr, $exponent:expr) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ROUNDOFF: Self = $t::EPSILON / 2.0;
@@ -68,7 +67,6 @@ macro_rules! real {
             const TINY: Self = $t::MIN_POSITIVE;
             const SAFE_SQUARE: Self = $t::MIN_POSITIVE / (Self::ROUNDOFF * Self::ROUNDOFF);
             const RELATIVE_TOLERANCE: Self = $tolerance;
-            const SPLIT: Self = $split;
 
             #[inline(always)]
             fn root(self) -> Self {
@@ -101,9 +99,14 @@ macro_rules! real {
             fn power_of_two(self) -> Self {
                 $t::from_bits(self.to_bits() & $exponent)
             }
+            #[inline(always)]
+            fn upper_half(self) -> Self {
+                // (A carry into the exponent is what rounding does. Infinite is what rounds to it; NaN stays so, or becomes infinite.)
+                $t::from_bits(self.to_bits().wrapping_add($half) & !(2 * $half - 1))
+            }
         }
     };
 }
 
-real!(f32, libm::sqrtf, 1e-4, 4097.0, 0x7F80_0000);
-real!(f64, libm::sqrt, 1e-6, 134_217_729.0, 0x7FF0_0000_0000_0000);
+real!(f32, libm::sqrtf, 1e-4, 0x800, 0x7F80_0000);
+real!(f64, libm::sqrt, 1e-6, 0x400_0000, 0x7FF0_0000_0000_0000);

@@ -28,11 +28,8 @@ impl<T: Real> Accumulator<T> {
         if a == T::zero() || b == T::zero() {
             return; // Low words and axes often are.
         }
-        let halves = |x: T| {
-            let c = T::SPLIT * x;
-            let high = c - (c - x);
-            (high, x - high)
-        };
+        let halves = |x: T| (x.upper_half(), x - x.upper_half());
+        // (Each step below is exact, in every rounding mode: low halves are signed, so that none has a bit more than there is room for.)
         let product = a * b;
         let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
         self.error += a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2);

@@ -157,8 +157,8 @@ pub trait Support<T: Real, const N: usize> {
         Vector::repeat(self.error())
     }
 
-    /// The support function in twice the precision: a point of the core that is farthest along a direction near unit length, both in two words. With the unit
-    /// roundoff u, coordinate i of the point is off by no more than e_i = 2^8 u^2 [`extents`](Support::extents)_i, and its height by no more than the sum of
+    /// The support function in twice the precision: a point of the core that is farthest along a direction near unit length, both in two words; of an ellipsoid,
+    /// whose core lacks its [`rolling_radius`](Support::rolling_radius), the point with that put on. With the unit roundoff u, coordinate i of the point is off by no more than e_i = 2^8 u^2 [`extents`](Support::extents)_i, and its height by no more than the sum of
     /// |u_i| e_i. Shallow contact of such bodies is measured to the last digits. `None`: not offered.
     fn support_in_two_words(&self, _u: &TwoWords<T, N>) -> Option<TwoWords<T, N>> {
         None

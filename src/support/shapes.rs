@@ -287,8 +287,7 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
             return Some(TwoWords::from(Vector::zeros()));
         }
         let scale = T::one() / size.power_of_two();
-        let outward = u.times(&(self.semi * scale)).unit().times(&self.semi);
-        Some(if self.ball > T::zero() { outward.plus(&u.unit().times(&Vector::repeat(-self.ball))) } else { outward })
+        Some(u.times(&(self.semi * scale)).unit().times(&self.semi))
     }
     fn rolling_radius(&self) -> T {
         self.ball

@@ -28,8 +28,8 @@ use qdist::{Real, Vector};
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
 
-/// For sets that know themselves in twice the precision: writes a point of the core that is farthest along a direction u. Both are exact sums of two
-/// vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
+/// For sets that know themselves in twice the precision: writes a point of the core (with the ball of rolling_radius put on, where there is one) that is farthest
+/// along a direction u. Both are exact sums of two vectors: u = direction[0 .. N - 1] + direction[N .. 2 N - 1], near unit length, and the point point[0 .. N - 1] + point[N .. 2 N - 1]. Coordinate i of
 /// the point may be off by 2^8 roundoff^2 extents[i], its height by what that makes. Returns 0, or anything else where it has no answer.
 pub type qdist_precise_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;

@@ -49,13 +49,14 @@
 //!
 //! A placed ellipsoid is its image under R, which is a rotation to some roundoffs only; the ball of radius ρ that its core leaves over is no ball then, but R ρ B, off
 //! by as much. With s bounding R^T R - I, the semi axes of R ρ B are between ρ (1 - 2 s) and ρ (1 + 2 s), and a ball of radius ρ' = ρ (1 - 8 s) rolls in it as well: that is
-//! what counts as ball term here, and the rest goes into the points, as ρ R w / |w| - ρ' n for w = R^T n. (Spheres and margins stay balls by definition.)
+//! what counts as ball term here, and the rest goes into the points: shapes tell them with ρ w / |w| put on, w = R^T n, and ρ' n is taken away. (Spheres and margins stay balls by definition.)
 //!
 //! # Errors
 //!
 //! Products are split and sums are compensated (`Accumulator`): k terms of sum S are known to 2 k^2 u^2 S, and a unit roundoff of the result, which
-//! here is as small as d. A direction turned into a body's frame is 2 N terms, no sum above 2 |n|; a point 4 N + 2 terms, a height 3 N. With L the sum of all
-//! extents and offsets, that is below 2^13 u^2 L; what a shape adds of its own is 2^8 u^2 L.
+//! here is as small as d. A direction turned into a body's frame is 2 N terms, no sum above 2 |n|; a point 4 N + 2 terms, the difference of two 4, a height 3 N to 4 N. With L the
+//! sum of all extents and offsets, these are 288, 679, 55 and 288 u^2 L in space, and what a shape adds of its own is 2^8 u^2 L: together below 2^11. Rounding modes
+//! other than the usual one double u, and make it 2^13; E is twice that.
 
 mod facets;
 mod level;

@@ -2,7 +2,7 @@
 
 use core::cell::{Cell, RefCell};
 
-use crate::math::{TwoWords, Vector};
+use crate::math::{TwoWords, Vector, unit};
 use crate::scalar::Real;
 use crate::solver::depth::body::{Anchor, Body, skew};
 use crate::solver::depth::pair::Pair;
@@ -116,12 +116,14 @@ impl<T: Real, const N: usize> Body<'_, T, N> {
     /// The placed support point in two words, less that of the ball of radius `rolling` in place of the shape's own; and the core's point in its frame, rounded.
     fn precise(&self, u: &Vector<T, N>, rolling: T) -> Option<(TwoWords<T, N>, Vector<T, N>)> {
         let local = TwoWords::from(*u).turned_back(&self.rotation);
-        let core = self.shape.support_in_two_words(&local)?;
-        let ball = |u: TwoWords<T, N>, radius: T| u.unit().times(&Vector::repeat(radius));
-        let rolls = rolling > T::zero();
-        let point = if rolls { core.plus(&ball(local, self.shape.rolling_radius())) } else { core };
-        let point = point.turned(&self.rotation).plus(&TwoWords::from(self.translation));
-        Some((if rolls { point.plus(&-ball(TwoWords::from(*u), rolling)) } else { point }, core.high))
+        let own = self.shape.support_in_two_words(&local)?;
+        let point = own.turned(&self.rotation).plus(&TwoWords::from(self.translation));
+        if !(rolling > T::zero()) {
+            return Some((point, own.high));
+        }
+        let ball = TwoWords::from(*u).unit().times(&Vector::repeat(rolling));
+        let core = own.high - unit(&local.high) * self.shape.rolling_radius();
+        Some((point.plus(&-ball), core))
     }
 
     /// The ball term that goes with it.

@@ -39,20 +39,20 @@ impl<T: Real, const N: usize> Deepest<T, N> {
         Ok(Deepest { core, swell, balls: [a.ball, T::zero()], error: anchor.error, astray })
     }
 
-    /// The same in two words; `None` where the shape does not tell. A ball that rolls in the shape is its image under the body's matrix, as the shape is: it is put on
-    /// in the shape's frame, and taken away from the ball term.
+    /// The same in two words; `None` where the shape does not tell. A ball that rolls in the shape is its image under the body's matrix, as the shape is: it is in
+    /// the point already, and taken away from the ball term.
     pub fn in_two_words(a: &Body<'_, T, N>, v: &TwoWords<T, N>, lost: T, anchor: &Anchor<T, N>) -> Option<Self> {
         // (Errors are told by what a shape says of its extents.)
         if !(a.shape.extent() > T::zero() || anchor.extent.is_zero()) {
             return None;
         }
         let core = a.shape.support_in_two_words(v)?;
-        let rolling = a.shape.rolling_radius();
-        let swell = v.unit().times(&Vector::repeat(rolling));
-        // 2^8 u^2 by the contract of the former, 2^6 for each coordinate of a unit vector and as much for the product.
-        let size = a.shape.extents().sum() + rolling * T::count(N);
-        let error = size * (T::count(1 << 9) * T::ROUNDOFF * T::ROUNDOFF) + T::count(1 << 10) * T::TINY;
+        // 2^8 u^2 by contract, in the usual rounding mode.
+        let error =
+            a.shape.extents().sum() * (T::count(1 << 10) * T::ROUNDOFF * T::ROUNDOFF) + T::count(1 << 10) * T::TINY;
+        let balls = [a.shape.radius(), -a.shape.rolling_radius()];
         let sane = finite(&core.high) && finite(&core.low) && error.finite();
-        sane.then_some(Deepest { core, swell, balls: [a.shape.radius(), -rolling], error, astray: lost })
+        let swell = TwoWords::from(Vector::zeros());
+        sane.then_some(Deepest { core, swell, balls, error, astray: lost })
     }
 }

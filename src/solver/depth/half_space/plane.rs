@@ -27,8 +27,8 @@ pub(super) struct Plane<'b, 'a, T: Real, const N: usize> {
 
 /// A bound of what sums in twice the precision leave, in u^2 of the terms' sizes: up to eight in each coordinate of a point and three in that
 /// of a normal, products of the parts, and nine in the end: 64 + 9 + 16 + 81 by the bound n^2 u^2 of Ogita, Rump & Oishi,
-/// 2^5 of |w|, and room for second order and low words.
-const TWOFOLD_ROUNDOFFS: usize = 256;
+/// 2^5 of |w|, and room for second order and low words. Four times that, since other rounding modes double u.
+const TWOFOLD_ROUNDOFFS: usize = 1024;
 
 impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
     pub fn new(half_space: &dyn Unbounded<T, N>, body: &'b Body<'a, T, N>) -> Self {

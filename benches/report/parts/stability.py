@@ -1,0 +1,222 @@
+"""Stability: extreme bodies, one row an extreme, against the oracle."""
+
+import math
+import statistics
+import subprocess
+from decimal import Decimal
+
+from report import build, cases, style
+from report.job import run
+from report.parts.depth import parsed
+
+# Steps that are enough for the oracle: what it leaves open is its own bracket, and only what contradicts that is false.
+ORACLE = ["1e-13", "600"]
+PEERS = ["libccd EPA", "libccd MPR", "FCL", "FCL signed", "Bullet", "MuJoCo", "coal"]
+KINDS = ["box", "sphere", "ellipsoid", "cylinder", "capsule", "cone", "hull-12"]
+# So long may a solver take for all pairs of a row.
+SECONDS = 20
+# The largest and smallest sizes that single precision is asked for.
+SINGLE = (1e-18, 1e18)
+
+
+def random_pair(dice, size=1.0, share=None):
+    kinds = [dice.choice(KINDS), dice.choice(KINDS)]
+    a, b = cases.overlapping(dice, kinds, dice.between(0.02, 0.3) if share is None else share)
+    return scaled(a, size), scaled(b, size)
+
+
+def scaled(body, size):
+    return cases.Body(body.kind, [x * size for x in body.numbers], body.rotation, [x * size for x in body.translation])
+
+
+def moved(body, by):
+    return cases.Body(body.kind, body.numbers, body.rotation, [x + y for x, y in zip(body.translation, by)])
+
+
+def powers(*exponents):
+    return [(f"1e{e}", 10.0**e) for e in exponents]
+
+
+def rows():
+    """(extreme, value, function of dice that makes a pair, size that errors are shares of, sizes of the numbers)."""
+    for name, size in powers(-140, -60, -30, -9, 9, 30, 60, 140):
+        yield "size of the bodies", name, lambda dice, s=size: random_pair(dice, s), size
+    for name, size in powers(-17, 17):
+        yield "size of the bodies", name, lambda dice, s=size: random_pair(dice, s), size
+    for name, far in powers(3, 6, 9, 12):
+        yield "distance from the origin, in sizes", name, lambda dice, f=far: away(dice, f), 1.0
+    for name, aspect in powers(2, 4, 6, 8):
+        yield "longest over shortest side", f"{name}", lambda dice, a=aspect: thin(dice, a), 1.0
+    for name, ratio in powers(3, 6, 9, 12):
+        yield "size of one over the other", name, lambda dice, r=ratio: unequal(dice, r), 1.0
+    for name, share in powers(-15, -12, -9, -6, -3):
+        yield "overlap, of the size", name, lambda dice, s=share: shallow(dice, s), 1.0
+    yield "concentric", "", concentric, 1.0
+    yield "the same body twice", "", identical, 1.0
+    yield "faces in one plane", "", coplanar, 1.0
+    yield "touching, to the last bit", "", touching, 1.0
+    for name, thick in powers(-13, -9, -6):
+        yield "nearly flat hull, thickness", name, lambda dice, t=thick: flat(dice, t), 1.0
+    yield "points given twice, and on lines", "", repeated, 1.0
+    for name, off in powers(-12, -9, -7, -5):
+        yield "rotation matrices off by", name, lambda dice, o=off: rough(dice, o), 1.0
+
+
+def away(dice, far):
+    a, b = random_pair(dice)
+    by = [far * x for x in dice.direction()]
+    return moved(a, by), moved(b, by)
+
+
+def thin(dice, aspect):
+    a = cases.Body("box", [dice.between(0.3, 1), dice.between(0.3, 1), 1 / aspect], dice.rotation())
+    b = cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation())
+    u = dice.direction()
+    reach = a.height(u) + b.height([-x for x in u])
+    b.translation = [x * reach * 0.9 for x in u]
+    return a, b
+
+
+def unequal(dice, ratio):
+    a, b = (cases.Body(*cases.shape(dice, dice.choice(KINDS), size), dice.rotation()) for size in (1, 1 / ratio))
+    u = dice.direction()
+    reach = a.height(u) + b.height([-x for x in u]) * dice.between(-0.5, 1)
+    b.translation = [x * reach for x in u]
+    return a, b
+
+
+def shallow(dice, share):
+    """Bodies that are apart are moved along their normal: here the normal of a box's face, or the line between two balls."""
+    a = cases.Body("box", cases.shape(dice, "box")[1])
+    b = cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation())
+    b.translation = [dice.between(-0.1, 0.1), dice.between(-0.1, 0.1), a.numbers[2] + b.height([0, 0, -1]) - share]
+    return a, b
+
+
+def concentric(dice):
+    return tuple(cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation()) for _ in range(2))
+
+
+def identical(dice):
+    a = cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation(), [dice.between(-1, 1) for _ in range(3)])
+    return a, a
+
+
+def coplanar(dice):
+    """Boxes on one floor, one of them against the other's side."""
+    a, b = (cases.Body("box", cases.shape(dice, "box")[1]) for _ in range(2))
+    a.translation = [0, 0, a.numbers[2]]
+    b.translation = [(a.numbers[0] + b.numbers[0]) * dice.between(0.5, 0.95), 0, b.numbers[2]]
+    return a, b
+
+
+def touching(dice):
+    """The sum of the half lengths, rounded: apart, overlapping or neither, by an ulp."""
+    a, b = (cases.Body("box", cases.shape(dice, "box")[1]) for _ in range(2))
+    x = a.numbers[0] + b.numbers[0]
+    b.translation = [dice.choice([x, math.nextafter(x, 0), math.nextafter(x, 9)]), dice.between(-0.1, 0.1), dice.between(-0.1, 0.1)]
+    return a, b
+
+
+def flat(dice, thick):
+    points = [x for _ in range(12) for x in (dice.between(-1, 1), dice.between(-1, 1), thick * dice.between(-1, 1))]
+    rotation = dice.rotation()
+    b = cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation(), [0.2 * x for x in dice.direction()])
+    return cases.Body("hull", points, rotation), b
+
+
+def repeated(dice):
+    corners = [dice.direction() for _ in range(6)]
+    between = [[(x + y) / 2 for x, y in zip(p, q)] for p in corners for q in corners if p is not q]
+    points = corners + corners + between
+    dice.shuffle(points)
+    a = cases.Body("hull", [x for p in points for x in p], dice.rotation())
+    b = cases.Body(*cases.shape(dice, dice.choice(KINDS)), dice.rotation(), [0.8 * x for x in dice.direction()])
+    return a, b
+
+
+def rough(dice, off):
+    a, b = random_pair(dice)
+    for body in (a, b):
+        body.rotation = [[x + off * dice.between(-0.3, 0.3) for x in row] for row in body.rotation]
+    return a, b
+
+
+def measure(job):
+    program, oracle = build.build(job), build.build_oracle(job)
+    here = set(run([program, "solvers"]).split("\n"))
+    solvers = ["qdist", "qdist f32", *(name for name in PEERS if name in here)]
+    columns = ["extreme", "value", "solver", "mode", "pairs", "false", "no_answer", "failed", "median_width", "worst_width", "outcomes"]
+    all_rows = []
+    by_name = {}
+    for extreme, value, make, size in rows():
+        by_name.setdefault(extreme, []).append((value, make, size))
+    for extreme, values in by_name.items():
+        output = "".join(c if c.isalnum() else "-" for c in extreme) + ".csv"
+        work = lambda: job.write_rows(output, measured(job, extreme, values, solvers, (program, oracle)), columns)
+        job.step(extreme, [output], work)
+        all_rows += job.rows(output)
+    job.write_rows("stability.csv", all_rows, columns)
+
+
+def measured(job, extreme, values, solvers, programs):
+    program, oracle = programs
+    for value, make, size in values:
+        dice = cases.Dice(f"{extreme} {value}")
+        file = job.path("pairs.cases")
+        cases.write(file, [cases.case(str(k), *make(dice), size=size) for k in range(20 if job.quick else 200)])
+        truth = {"qdist f32": parsed(run([oracle, file, "float", *ORACLE])), "": parsed(run([oracle, file, *ORACLE]))}
+        for solver in solvers:
+            if solver == "qdist f32" and not SINGLE[0] < size < SINGLE[1]:
+                continue
+            of = truth.get(solver, truth[""])
+            modes = ["", "ftz", "up", "down", "zero"] if solver.startswith("qdist") else [""]
+            for mode in modes:
+                said = answered(program, file, solver, mode)
+                yield judged(extreme, value, solver, mode, size, of, said)
+
+
+def answered(program, file, solver, mode):
+    command = [program, "answers", file, *(["--mode", mode] if mode else []), f"{solver}:0"]
+    try:
+        out = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS).stdout
+    except subprocess.TimeoutExpired as late:
+        out = (late.stdout or b"").decode()
+    return {row["case"]: row for row in parsed(out) if len(row) == 9} if out else {}
+
+
+def judged(extreme, value, solver, mode, size, truth, said):
+    """What the answers of one solver are worth. Of a bracket: is it true, and how wide, as a share of the bodies' size. Of a depth alone: is it off by more than 1 % of the
+    depth, or a millionth of the size where that is more."""
+    false = none = failed = 0
+    widths, outcomes = [], {}
+    for of in truth:
+        row = said.get(of["case"], {"outcome": "none", "depth": "nan", "lower": "nan", "upper": "nan"})
+        outcomes[row["outcome"]] = outcomes.get(row["outcome"], 0) + 1
+        numbers = {key: Decimal(row[key].replace("-nan", "nan")) for key in ("lower", "upper", "depth")}
+        least, most = Decimal(of["lower"]), Decimal(of["upper"])
+        if numbers["depth"].is_nan():
+            none += 1
+        else:
+            slack = max(abs(most) * Decimal("0.01"), Decimal(size) * Decimal("1e-6"))
+            failed += not least - slack <= numbers["depth"] <= most + slack
+        if not numbers["lower"].is_nan() and not numbers["upper"].is_nan():
+            false += numbers["lower"] > most or numbers["upper"] < least
+            widths.append(float((numbers["upper"] - numbers["lower"]) / Decimal(size)))
+    return {
+        "extreme": extreme,
+        "value": value,
+        "solver": solver,
+        "mode": mode or "nearest",
+        "pairs": len(truth),
+        "false": false if solver.startswith("qdist") else "",
+        "no_answer": none,
+        "failed": failed,
+        "median_width": f"{statistics.median(widths):.2g}" if widths else "",
+        "worst_width": f"{max(widths):.2g}" if widths else "",
+        "outcomes": " ".join(f"{name}:{count}" for name, count in sorted(outcomes.items())),
+    }
+
+
+def tell(job):
+    return "## Stability\n"
