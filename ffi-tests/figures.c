@@ -25,7 +25,7 @@ static double least(void (*call)(void), int runs) {
     return best;
 }
 
-/* An ellipsoid in six dimensions, and a tolerance that it cannot meet in 50,000 points. */
+/* An ellipsoid in six dimensions, and a tolerance that it cannot meet in 50,000 steps. */
 static int32_t ellipsoid(void *user, const double *u, double *p) {
     double sum = 0;
     (void)user;
@@ -112,7 +112,7 @@ static void ask_finger(void) {
 
 int main(void) {
     printf("times in microseconds\n");
-    printf("50,000 points in 6-D            %9.0f\n", least(points_in_six_dimensions, 2));
+    printf("50,000 steps in 6-D             %9.0f\n", least(points_in_six_dimensions, 2));
     make_grasp();
     printf("contact forces of 4 contacts    %9.1f\n", least(forces, 200));
     printf("gradients of 4 contacts         %9.1f\n", least(gradients, 200));

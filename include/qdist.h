@@ -902,8 +902,8 @@ QDIST_API qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist
 typedef struct {
     /// sizeof(qdist_options_f64).
     uint32_t struct_size;
-    /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take a second or two in dimension 6
-    /// (`./x figures`), and 64 for each vertex of a polytopal Q.
+    /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take half a second to two seconds in
+    /// dimension 6 (`./x figures`; `cargo run --release --features std --example worst_case`), and 64 for each vertex of a polytopal Q.
     uint32_t max_iterations;
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     qdist_interrupt interrupt;

@@ -40,8 +40,8 @@ use qdist::Real;
 pub struct qdist_options_f64 {
     /// sizeof(qdist_options_f64).
     pub struct_size: u32,
-    /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take a second or two in dimension 6
-    /// (`./x figures`), and 64 for each vertex of a polytopal Q.
+    /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take half a second to two seconds in
+    /// dimension 6 (`./x figures`; `cargo run --release --features std --example worst_case`), and 64 for each vertex of a polytopal Q.
     pub max_iterations: u32,
     /// NULL; or asked before every iteration whether to stop (QDIST_INTERRUPTED).
     pub interrupt: qdist_interrupt,
