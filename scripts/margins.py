@@ -168,7 +168,6 @@ HIDDEN = {
     "distance: ball put back, error": "hidden by the rounding of heights, as large",
     "polytope: centre beneath a point, in two words": "as \"surface folded over\": the proof needs it",
     "rays: ball along a ray, seen from there": "one roundoff, of which the rounding of heights has ten",
-    "pair: rounding of the offset": "three roundoffs at most, for which heights and cores have room",
     "pair: by direction, matrices that stretch": "errors are spread by the matrix as it is; the rest is hidden by the rounding of the sum",
     "pair: ball in the points, rounding": "the ball counts in the core's extent and its twenty roundoffs",
     "pair: ball that is an image, rounding of what is measured": "four of the bound's own six roundoffs",
@@ -186,8 +185,9 @@ HIDDEN = {
     "fine: origin beneath each facet": "as \"origin beneath the lowest facet\": the proof needs it",
 }
 
-# Of the test program `core`.
-TESTS = ["exact_margins", "depth_margins", "far_points", "half_spaces"]
+# Of the test program `core`, and of the library's own tests, where a query has room for what a part of it loses.
+TESTS = ["exact_margins::", "depth_margins::", "far_points::", "half_spaces::"]
+OWN_TESTS = ["solver::depth::pair::", "solver::depth::sectors::"]
 SWITCH = """
 /// Is this margin taken away?
 #[cfg(feature = "std")]
@@ -238,24 +238,26 @@ def switched(root, copy):
 
 
 def built(copy):
-    """Builds the tests of the copy; their program."""
-    command = ["cargo", "test", "--locked", "--features", "std", "--no-run", "--target-dir", copy.parent, "--test", "core"]
+    """Builds the tests of the copy: programs, and what of each is run."""
+    command = ["cargo", "test", "--locked", "--features", "std", "--no-run", "--target-dir", copy.parent, "--lib", "--test", "core"]
     run = subprocess.run(command, cwd=copy, stderr=subprocess.PIPE, text=True)
     if run.returncode != 0:
         sys.exit(run.stderr)
-    return re.search(r"\(([^()]*/core-[0-9a-f]+)\)", run.stderr).group(1)
+    program = lambda name: re.search(rf"\(([^()]*/{name}-[0-9a-f]+)\)", run.stderr).group(1)
+    return [[program("qdist"), *OWN_TESTS], [program("core"), *TESTS]]
 
 
-def failing(program, copy, number):
-    """The first test that fails without the margin; `None`: all pass."""
-    try:
-        run = subprocess.run([program, *(f"{test}::" for test in TESTS)], cwd=copy, env={**os.environ, "MARGIN": str(number)}, capture_output=True, text=True, timeout=120)
-    except subprocess.TimeoutExpired:
-        return "(does not end)"
-    if run.returncode == 0:
-        return None
-    names = re.findall(r"^test (\S+) \.\.\. FAILED", run.stdout, re.M)
-    return ", ".join(names) or "(stops)"
+def failing(programs, copy, number):
+    """The tests that fail without the margin; `None`: all pass."""
+    failed = []
+    for program in programs:
+        try:
+            run = subprocess.run(program, cwd=copy, env={**os.environ, "MARGIN": str(number)}, capture_output=True, text=True, timeout=120)
+        except subprocess.TimeoutExpired:
+            return "(does not end)"
+        if run.returncode != 0:
+            failed += re.findall(r"^test (\S+) \.\.\. FAILED", run.stdout, re.M) or ["(stops)"]
+    return ", ".join(failed) or None
 
 
 def main():
@@ -269,12 +271,12 @@ def main():
     copy = target / "margins"
     copy.mkdir(parents=True, exist_ok=True)
     switched(root, copy)
-    program = built(copy)
-    if (failed := failing(program, copy, -1)) is not None:
+    programs = built(copy)
+    if (failed := failing(programs, copy, -1)) is not None:
         sys.exit(f"a test fails with all margins: {failed}")
     missing = 0
     for number, name in wanted:
-        found = failing(program, copy, number)
+        found = failing(programs, copy, number)
         missing += found is None and name not in HIDDEN
         print(f"{name:55} {found or '(' + HIDDEN[name] + ')' if name in HIDDEN else found or 'NO TEST FAILS'}", flush=True)
     print(f"{len(wanted)} margins, {missing} of them without a test that fails or a reason")

@@ -134,7 +134,7 @@ impl<T: Real> Pair<'_, '_, T, 3> {
     }
 
     /// See above.
-    fn rounding_of_sectors(&self) -> T {
+    pub(super) fn rounding_of_sectors(&self) -> T {
         let off = (skew(&self.a.rotation) + skew(&self.b.rotation)) * T::count(4);
         (off + T::count(32) * T::ROUNDOFF) * self.extent
     }

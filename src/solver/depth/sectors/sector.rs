@@ -142,3 +142,67 @@ impl<T: Real> Section<T> for Sector<'_, T> {
         Ok(enough.then_some(Stop::Met))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Round;
+    use super::*;
+    use crate::math::unit;
+    use crate::solver::depth::body::Body;
+    use crate::solver::depth::pair::Pair;
+    use crate::support::BoxShape;
+
+    fn dice(seed: u64) -> impl FnMut() -> f64 {
+        let mut s = seed;
+        move || {
+            s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (s >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// In `f64`: the point of the half plane for a point of M, over the azimuths of the sector.
+    fn flattened(sector: &Sector<'_, f32>, vertex: &Vertex<f32, 3>) -> [f64; 2] {
+        let wide = |v: &Vector<f32, 3>| v.map(f64::from);
+        let axis = wide(&sector.spin.axis).normalize();
+        let across = |v: &Vector<f64, 3>| v - axis * v.dot(&axis);
+        let (point, witness, offset) = (wide(&vertex.point), wide(&vertex.witness), wide(&sector.offset));
+        let turning = if sector.spin.first { witness } else { point - witness - offset };
+        let rest = across(&(point - turning));
+        let [left, right] = sector.ends.map(|e| across(&wide(&e)).normalize());
+        // Is the azimuth opposite to the rest's in the sector?
+        let between = |e: &Vector<f64, 3>| left.cross(e).dot(&axis) >= 0.0 && e.cross(&right).dot(&axis) >= 0.0;
+        let lowest = sector.cosine == 0.0 || between(&-rest);
+        let least = if lowest { -rest.norm() } else { rest.dot(&left).min(rest.dot(&right)) };
+        [least + across(&turning).norm(), point.dot(&axis)]
+    }
+
+    /// What a point of the half plane is off is no more than what is charged for it.
+    #[test]
+    fn points_of_the_half_plane_are_rounded() {
+        let mut next = dice(1);
+        for case in 0..4000 {
+            let mut random = |size: f64| Vector::<f32, 3>::from_fn(|_, _| (size * next()) as f32);
+            let [a, b] = [1.0, 0.5].map(|size| BoxShape::new(random(size).abs()).unwrap());
+            let bodies = [Body::at(&a, Vector::zeros()), Body::at(&b, random(4.0))];
+            let pair = Pair::new(&bodies[0], &bodies[1]).unwrap();
+            let (axis, start) = (unit(&random(1.0)), random(1.0));
+            let (point, witness) = pair.sample(&unit(&random(1.0)), false).unwrap();
+            let vertex = Vertex { point, witness };
+            let spin = Spin { axis, turns: true, first: case % 2 == 0, offset: pair.offset, other: None };
+            let start = unit(&(start - axis * axis.dot(&start)));
+            let mut round = Round::new(unit(&(start - axis * axis.dot(&start))));
+            if case % 3 > 0 {
+                round.quarter(&axis, round.left);
+                for _ in 0..case % 5 {
+                    let middle = round.sector(&spin, spin.offset).middle;
+                    round.halve(middle);
+                }
+            }
+            let sector = round.sector(&spin, spin.offset);
+            let place = sector.flatten(&vertex, &sector.middle).map(f64::from);
+            let ([radius, height], off) = (flattened(&sector, &vertex), f64::from(pair.rounding_of_sectors()));
+            let beyond = [place.x - radius, place.y - height, place.z + height];
+            assert!(beyond.iter().all(|&x| x <= off), "{case} {beyond:?} {off}");
+        }
+    }
+}
