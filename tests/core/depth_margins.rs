@@ -8,10 +8,11 @@ use crate::common;
 use common::cases::{Placed, Shape};
 use common::dd::Dd;
 use common::dice::Dice;
+use common::hull::{ExactHull, signed_depth};
 use common::lattice::{Lattice, Lean, ball, symmetric, truth};
 use nalgebra::{Matrix3, Rotation3, Unit};
-use qdist::support::{Ellipsoid, Failure, HalfSpace, Sphere, Support, Symmetry, Turning};
-use qdist::{Body, Depth, Options, Real, Vector, Workspace};
+use qdist::support::{Ellipsoid, Failure, HalfSpace, Points, Sphere, Support, Symmetry, Turning};
+use qdist::{Body, Depth, Options, Real, TwoWords, Vector, Workspace};
 
 /// So many cases, or more: MORE=100 searches for what a hundred times as many would show.
 fn cases(few: usize) -> std::ops::Range<usize> {
@@ -460,30 +461,6 @@ fn corners_near_an_axis_f32() {
     corners_near_an_axis::<f32>(8);
 }
 
-/// A tip that turns around a capsule's end: half a sector ends at a sharper edge than the sector.
-#[test]
-fn halves_of_a_sector() {
-    let cone = placed(
-        "cone",
-        &[0.8337772792667575, 0.49278996880630854],
-        Matrix3::from_row_slice(&[
-            0.9989003227337949,
-            -0.045580678771977565,
-            0.010979388189346184,
-            0.045564292419295896,
-            0.9989598961522842,
-            0.001738141461487024,
-            -0.011047194153061213,
-            -0.0012359620127920302,
-            0.9999382140408745,
-        ]),
-        [-8.443644088826562e-5, 0.00010072437636747442, -3.9603543537104404e-5],
-    );
-    let stretched = Matrix3::from_diagonal(&Vector::from([0.9999999999999969, 1.000000000000003, 0.9999999999999969]));
-    let capsule = placed("capsule", &[0.3579782209602553, 0.8146932551192714], stretched, [0.0; 3]);
-    agrees::<f64>(&cone, &capsule, 1.820501376486907e-4, "");
-}
-
 /// Ellipsoids whose centres and axes agree, but for what a tolerance allows.
 fn ellipsoids_with_nearly_common_axes<T: Real>(seed: u64) {
     let mut dice = Dice::new(seed);
@@ -759,4 +736,133 @@ fn nearly_round_bodies_in_two_words() {
     contacts_in_two_words(20, ["round", "round"], 28.0);
     contacts_in_two_words(21, ["round", "sphere"], 28.0);
     contacts_in_two_words(22, ["round", "hull"], 1.0);
+}
+
+/// [`Rolled`], told in two words as well: with the ball put on.
+struct RolledInTwoWords;
+
+impl Support<f32, 3> for RolledInTwoWords {
+    fn support(&self, u: &Vector<f32, 3>) -> Result<Vector<f32, 3>, Failure> {
+        Rolled.support(u)
+    }
+    fn support_in_two_words(&self, u: &TwoWords<f32, 3>) -> Option<TwoWords<f32, 3>> {
+        let unit = (u.high.map(f64::from) + u.low.map(f64::from)).normalize();
+        let high = unit.map(|x| x as f32);
+        Some(TwoWords { high, low: (unit - high.map(f64::from)).map(|x| x as f32) })
+    }
+    fn radius(&self) -> f32 {
+        1.0
+    }
+    fn rolling_radius(&self) -> f32 {
+        1.0
+    }
+    fn extent(&self) -> f32 {
+        Rolled.extent()
+    }
+    fn error(&self) -> f32 {
+        0.0
+    }
+}
+
+/// Its image under this matrix stands on a face across the axis, beside the origin: so the face's corners are found along directions far aside. Less a ball
+/// that does not roll in the image, its points there reach farther along the normal than its point along the normal does.
+fn stands_on_a_face(dice: &mut Dice, rotation: Matrix3<f32>, axis: usize, what: &str) {
+    let [across, beside] = [(axis + 1) % 3, (axis + 2) % 3];
+    let place = |at: [f64; 2], high: f64| {
+        let mut p = [0.0; 3];
+        [p[across], p[beside], p[axis]] = [at[0], at[1], high].map(|x| x as f32);
+        p
+    };
+    let (far, spin) = (dice.decade(-1.0, 0.7), dice.range(0.0, 2.0));
+    let middle = [dice.signed() * far, dice.signed() * far];
+    let mut corners: Vec<[f32; 3]> = (0..3)
+        .map(|i| {
+            let (sin, cos) = (spin + f64::from(i) * 2.1 + 0.3 * dice.signed()).sin_cos();
+            let wide = dice.range(0.5, 3.0);
+            place([middle[0] + cos * wide, middle[1] + sin * wide], 0.0)
+        })
+        .collect();
+    corners.push(place(middle, -0.5));
+    let high = rounded::<f32>(1.0 - dice.decade(-4.5, -2.5));
+    let d = length(&std::array::from_fn(|j| Dd::new(rotation[(axis, j)].into()))) - Dd::new(high);
+    let face = Points::new(&corners).unwrap();
+    let a = Body::new(&RolledInTwoWords, rotation, Vector::from(place(middle, high))).unwrap();
+    for relative in [1e-4, 1e-3, 1e-2] {
+        let options = Options { relative, ..Options::default() };
+        holds(&depth(&a, &Body::at(&face, Vector::zeros()), &options), d, &format!("{what} {relative:e} {rotation:?}"));
+    }
+}
+
+/// A matrix that stretches along one axis and shrinks along another.
+#[test]
+fn an_image_of_a_ball_in_two_words() {
+    let mut dice = Dice::new(61);
+    for case in cases(60) {
+        let off = 14.0 * f32::ROUNDOFF;
+        let rotation = Matrix3::from_diagonal(&Vector::from_fn(|_, _| 1.0 + dice.pick(&[-off, off])));
+        stands_on_a_face(&mut dice, rotation, case % 3, &format!("{case}"));
+    }
+}
+
+/// A matrix that turns about an axis, and shrinks across it by what nobody sees who measures it.
+#[test]
+fn an_image_of_a_ball_by_roundoffs_in_two_words() {
+    let (mut dice, mut found) = (Dice::new(62), 0);
+    for case in cases(20_000) {
+        let (sin, cos) = dice.range(0.1, 1.4).sin_cos();
+        let (s, c) = (sin as f32, cos as f32);
+        let short = Dd::new(1.0) - Dd::product(c.into(), c.into()) - Dd::product(s.into(), s.into());
+        if c * c + s * s == 1.0 && short > Dd::new(f32::ROUNDOFF.into()) {
+            let rotation = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
+            stands_on_a_face(&mut dice, rotation, found % 3, &format!("{case}"));
+            found += 1;
+        }
+    }
+    assert!(found > 20, "{found}");
+}
+
+/// Bodies far from the world's origin, which overlap by next to nothing: what two words lose far away is more than a roundoff of the depth.
+#[test]
+fn far_contacts_in_two_words() {
+    let (mut dice, mut found) = (Dice::new(63), 0);
+    for case in cases(2000) {
+        let mut body = || {
+            let points: Vec<[f32; 3]> = (0..6).map(|_| dice.direction::<3>().map(|x| x as f32)).collect();
+            (points, matrix::<f32>(dice.rotation()))
+        };
+        let ((points, turn_a), (others, turn_b)) = (body(), body());
+        let far = dice.decade(4.0, 4.6);
+        let at = Vector::from([far, dice.signed(), dice.signed()].map(|x| x as f32));
+        let mut to = Vector::from([far + dice.signed(), dice.signed(), dice.signed()].map(|x| x as f32));
+        let hull = |points: &[[f32; 3]], turn: &Matrix3<f32>, at: &Vector<f32, 3>| {
+            let moved = |p: &[f32; 3]| {
+                let turned = turned(turn, &p.map(f64::from));
+                std::array::from_fn(|i| turned[i] + Dd::new(at[i].into()))
+            };
+            ExactHull::new(&points.iter().map(moved).collect::<Vec<_>>())
+        };
+        // Across the far axis, where coordinates are fine, B is moved until the bodies overlap by this.
+        let wanted = dice.decade(-5.4, -5.1);
+        let first = hull(&points, &turn_a, &at);
+        let seen = |to: &Vector<f32, 3>| signed_depth(&first, &hull(&others, &turn_b, to));
+        for _ in 0..3 {
+            let found = seen(&to);
+            let across = found.normal[1].hypot(found.normal[2]).powi(2);
+            let by = (found.depth.to_f64() - wanted) / across;
+            if found.depth > Dd::ZERO && across > 0.05 {
+                to.y += (by * found.normal[1]) as f32;
+                to.z += (by * found.normal[2]) as f32;
+            }
+        }
+        let d = seen(&to).depth;
+        if (d.to_f64() - wanted).abs() > 0.1 * wanted {
+            continue;
+        }
+        let (a, b) = (Points::new(&points).unwrap(), Points::new(&others).unwrap());
+        let (a, b) = (Body::new(&a, turn_a, at).unwrap(), Body::new(&b, turn_b, to).unwrap());
+        let options = Options { relative: 1.0, ..Options::default() };
+        holds(&depth(&a, &b, &options), d, &format!("{case} {far:e}"));
+        found += 1;
+    }
+    assert!(found > 100, "{found}");
 }
