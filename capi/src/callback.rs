@@ -1,15 +1,10 @@
 //! Functions of the caller: support functions, unit sets, deadlines. What the header asks of them is what makes the calls right.
 
-use super::numbers::{MAX_DIMENSION, coordinates, length};
-use super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, code, qdist_interrupt};
-use super::symmetry::qdist_mirrored;
+use super::vocabulary::*;
 use core::cell::Cell;
-use core::ffi::c_void;
 use qdist::NOT_FINITE;
-use qdist::internal::{norm, one_by_one};
+use qdist::internal::norm;
 use qdist::qset::UnitSet;
-use qdist::support::Failure;
-use qdist::{Options, Real, TwoWords, Vector};
 
 pub type SupportFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T, point: *mut T) -> i32;
 pub type ValueFn<T> = unsafe extern "C" fn(user: *mut c_void, direction: *const T) -> T;

@@ -2,15 +2,8 @@
 //!
 //! Small numbers with names, for both scalars.
 
-use super::pointer::Out;
-use super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CAPACITY, QDIST_ERROR_CONTACT_CAP, QDIST_ERROR_CONTACT_FRICTION,
-    QDIST_ERROR_CONTACT_JACOBIAN, QDIST_ERROR_CONTACT_NORMAL, QDIST_ERROR_CONTACT_POSITION,
-    QDIST_ERROR_CONTACT_TANGENTS, QDIST_ERROR_CONTACT_WRENCH, QDIST_ERROR_FRAME, QDIST_ERROR_NONFINITE,
-    QDIST_ERROR_TOLERANCE, QDIST_ERROR_TORQUE_LIMIT, qdist_status,
-};
-use core::ffi::c_char;
-use qdist::grasp::{ContactError, ForceError, ForceModel, ForceOutcome, GraspError, Kink, Norm};
+use super::vocabulary::*;
+pub(crate) use qdist::grasp::{ContactError, ForceError, ForceModel, ForceOutcome, Friction, GraspError, Kink, Norm};
 
 /// The friction of a contact.
 pub type qdist_friction = u32;
@@ -161,7 +154,7 @@ pub(super) fn force_model(model: qdist_force_model) -> Check<ForceModel> {
     }
 }
 
-pub(super) fn norm(norm: qdist_norm) -> Check<Norm> {
+pub(super) fn checked_norm(norm: qdist_norm) -> Check<Norm> {
     match norm {
         QDIST_L1 => Ok(Norm::L1),
         QDIST_LINF => Ok(Norm::LInf),

@@ -4,17 +4,9 @@
 //!
 //! While a call runs, the header's tag is another one: a callback that would use the solver that is calling it meets that, and an error.
 
-use super::pointer::Out;
-use super::status::{
-    Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_BUSY, QDIST_ERROR_DIMENSION, QDIST_ERROR_SCALAR, QDIST_ERROR_SOLVER,
-    QDIST_ERROR_WORKSPACE_SIZE, from_workspace,
-};
-use core::ffi::c_void;
+use super::vocabulary::*;
 use core::ops::{Deref, DerefMut};
-use qdist::Layout;
-use qdist::Real;
-use qdist::Solver;
-use qdist::internal;
+use qdist::{Layout, internal};
 
 /// A solver: opaque, in the caller's memory.
 #[repr(C, align(8))]

@@ -1,7 +1,7 @@
 //! The layout of structs of the header: those that may grow begin with their size, and bytes that belong to no field are known, so that results are
 //! written whole (module [`pointer`](super::pointer)).
 
-use super::status::{Check, QDIST_ERROR_STRUCT_SIZE};
+use super::vocabulary::*;
 
 /// A struct that may grow: `struct_size` first, new fields last.
 ///
@@ -44,7 +44,7 @@ macro_rules! versioned {
         }
     };
 }
-pub(super) use versioned;
+pub(crate) use versioned;
 
 /// A struct of the header: where it has bytes that belong to no field.
 pub(super) trait Gaps {
@@ -66,7 +66,7 @@ macro_rules! gaps {
     (@until $type:ty, $until:ident) => { core::mem::offset_of!($type, $until) };
     (@until $type:ty,) => { size_of::<$type>() };
 }
-pub(super) use gaps;
+pub(crate) use gaps;
 
 gaps!(f64);
 gaps!(f32);

@@ -7,6 +7,7 @@
 //! * [`pointer`]: pointers of the caller as types, `In` and `Out`. [`callback`]: the caller's functions. [`numbers`]: checks, and loops over
 //!   run-time dimensions.
 //! * [`f64`](mod@f64): the structs and functions with suffix `_f64`. [`f32`](mod@f32): the same with `_f32`, made of their text by `build.rs`.
+//! * `vocabulary`: the one namespace of all these names, as C has it, so that files import little else.
 //! * `panic` (feature): what the freestanding library does about a panic, which cannot happen.
 //!
 //! Why text, and not structs and functions that are generic in the scalar: C sees names, and the generator of the header sees no macros, so that
@@ -45,4 +46,5 @@ mod pointer;
 pub mod status;
 pub mod symmetry;
 pub mod version;
+mod vocabulary;
 pub mod workspace;

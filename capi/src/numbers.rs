@@ -1,7 +1,6 @@
 //! Numbers of the caller, checked, and loops over run-time dimensions.
 
-use super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_NONFINITE, from_shape};
-use qdist::Real;
+use super::vocabulary::*;
 use qdist::internal::{check_numbers, check_sizes};
 
 /// The largest dimension.

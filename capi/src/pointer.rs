@@ -9,9 +9,7 @@
 //! Structs that may grow begin with their size ([`Versioned`], module [`layout`](super::layout)). One from an earlier header is shorter: what it lacks takes its default when it is
 //! read, and stays unwritten when it is a result.
 
-use super::layout::{Defaults, Gaps, Versioned, known};
-use super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL};
-use core::ffi::c_void;
+use super::vocabulary::*;
 use core::mem::MaybeUninit;
 
 /// Neither NULL nor misaligned.

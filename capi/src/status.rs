@@ -3,12 +3,9 @@
 //! Three questions, three types. A status says whether the call worked. An outcome says what the run concluded, and whatever
 //! it concluded, the bracket holds. A plan says how.
 
-use core::ffi::{c_char, c_void};
-use qdist::BodyError;
-use qdist::GraphError;
-use qdist::WorkspaceError;
-use qdist::support::{Failure, ShapeError};
-use qdist::{Outcome, Plan};
+use super::vocabulary::*;
+use qdist::support::ShapeError;
+use qdist::{GraphError, WorkspaceError};
 
 /// Did the call work? QDIST_OK, or a QDIST_ERROR that says what is wrong; then nothing has been written, except
 /// with QDIST_ERROR_CALLBACK.

@@ -1,7 +1,6 @@
 //! SYMMETRY
 
-use super::status::qdist_status;
-use core::ffi::c_void;
+use super::vocabulary::*;
 
 /// Of a body: none that is known.
 pub const QDIST_SYMMETRY_NONE: u32 = 0;

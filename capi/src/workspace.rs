@@ -1,8 +1,6 @@
 //! MEMORY AT RUN TIME
 
-use super::handle;
-use super::pointer::Out;
-use super::status::{QDIST_ERROR_SCALAR, qdist_status, status};
+use super::vocabulary::*;
 
 /// The number of bytes that a solver needs, the same number as QDIST_WORKSPACE_BYTES_F64 and QDIST_WORKSPACE_BYTES_F32, for languages that
 /// have no macros of C. scalar: sizeof(double) or sizeof(float), else QDIST_ERROR_SCALAR. dimension: 2 to 6.

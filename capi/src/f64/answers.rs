@@ -1,14 +1,8 @@
 //! The library's own support functions and unit sets, as C calls them: a struct of the header is behind `user`, and says what it is a set of. What
 //! the arguments are is the same for all, and is looked at here.
 
-use super::super::numbers::MAX_DIMENSION;
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ALIGNMENT, QDIST_ERROR_ARGUMENT, QDIST_ERROR_NULL, status};
-use super::sets::{qdist_precise_f64, qdist_support_f64};
-use super::unit_sets::qdist_unit_f64;
-use core::ffi::c_void;
+use super::*;
 use core::mem::MaybeUninit;
-use qdist::{TwoWords, Vector};
 
 /// How a struct answers as a set of dimension `N`.
 pub(super) trait Answers<const N: usize>: 'static {

@@ -1,16 +1,7 @@
 //! A query from arguments to result: what the exported functions of one question do before and after they ask the solver.
 
-use super::super::callback::Deadline;
-use super::super::handle::{self, qdist_solver};
-use super::super::numbers::{MAX_DIMENSION, MAX_POINTS, finite, first, flag, length, padded};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, code, outcome, overflow, plan};
-use super::query::{qdist_depth_f64, qdist_options_f64, qdist_result_f64};
-use super::sets::{CheckedSet, qdist_set_f64};
-use super::unit_sets::{CheckedUnit, qdist_unit_f64};
-use qdist::internal::{alone, one_by_one};
+use super::*;
 use qdist::qset::UnitSet;
-use qdist::{Answer, Depth, Options, Outcome, Solver, Vector};
 
 /// The options as the solver knows them, and the deadline.
 pub(super) fn convert<const N: usize>(options: In<qdist_options_f64>) -> Check<(Options<'static, f64, N>, Deadline)> {

@@ -1,27 +1,10 @@
 //! Bodies in space and in the plane: what is the same in both. The structs of the header differ in their dimension, and in what only bodies in
 //! space have; [`Placed`] is what they have in common.
 
-use super::super::callback::precise;
-use super::super::handle::{self, qdist_solver};
-use super::super::layout::Gaps;
-use super::super::numbers::{coordinates, lengths, tiny};
-use super::super::pointer::{In, Out};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_UNBOUNDED, from_body, from_shape, overflow, qdist_status, status,
-};
-use super::super::symmetry::{
-    QDIST_SYMMETRY_AXIS, QDIST_SYMMETRY_FULL, QDIST_SYMMETRY_NONE, qdist_turning, qdist_unbounded,
-};
-use super::answers::{Answers, exhaustive_of, support_of};
-use super::asked::{conclude, convert, from_depth};
-use super::query::{qdist_depth_f64, qdist_options_f64};
-use super::sets::{qdist_precise_f64, qdist_set_f64};
-use core::ffi::c_void;
+use super::*;
 use qdist::internal;
 use qdist::nalgebra::SMatrix;
-use qdist::support::{Failure, HalfSpace, Join, Rigid, Support, Symmetry, Turning};
-use qdist::{Body, BodyError, Depth, Options, Solver};
-use qdist::{Real, TwoWords, Vector};
+use qdist::support::{HalfSpace, Join, Rigid, Symmetry, Turning};
 
 /// What a body states about its set, beside what the set states itself.
 #[derive(Clone, Copy)]

@@ -3,12 +3,7 @@
 //! Sum, difference, convex hull of the union, and linear image of sets of any dimension. The structs and the sets that they point to must outlive the
 //! set that is made of them.
 
-use super::super::numbers::{MAX_DIMENSION, coordinates, dimension, dot, first, in_range, length, lengths, tiny};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::answers::{AnswersAny, mirrored_any, support_any};
-use super::sets::qdist_set_f64;
-use qdist::Real;
+use super::*;
 
 /// Two sets of the same dimension.
 #[repr(C)]

@@ -9,11 +9,7 @@
 //! the depth is that between the two planes. Where a pose is turned, and rounding does not tell whether the normals are
 //! opposite, upper is DBL_MAX (float: FLT_MAX), and lower holds in both cases.
 
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, from_shape, qdist_status, status};
-use super::bodies::Half;
-use super::sets::qdist_body_f64;
-use qdist::Vector;
+use super::*;
 use qdist::support::HalfSpace;
 
 /// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.

@@ -5,10 +5,7 @@
 //! smaller of the two radii stays a ball, and is exact. Joins may be joined again. Where both bodies turn about the z axis of the join's frame (identity rotations and
 //! translations along z), so does the join, and two bodies on one axis are a plane problem.
 
-use super::super::pointer::{In, Out};
-use super::super::status::{qdist_status, status};
-use super::bodies::Joined;
-use super::sets::qdist_body_f64;
+use super::*;
 
 /// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
 /// has changed must be made anew.

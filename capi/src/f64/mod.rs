@@ -18,3 +18,6 @@ pub mod span;
 pub mod unit_sets;
 mod unit_shapes;
 pub mod warm;
+
+use crate::vocabulary::*;
+use {answers::*, asked::*, bodies::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, unit_shapes::*};

@@ -8,17 +8,7 @@
 //! A pose has a 2 x 2 matrix, as one in space has a 3 x 3 matrix, and not an angle, whose sine and cosine would be rounded here, each in its own
 //! way: write { c, -s, s, c } for the cosine and sine that you have.
 
-use super::super::handle::qdist_solver;
-use super::super::layout::gaps;
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, from_shape, qdist_status, status};
-use super::super::symmetry::{QDIST_SYMMETRY_NONE, qdist_unbounded};
-use super::bodies::{Half, Joined, Placed, Stated, depth};
-use super::points::{fill_points, qdist_points_f64};
-use super::query::{qdist_depth_f64, qdist_options_f64};
-use super::sets::{qdist_precise_f64, qdist_set_f64};
-use super::shapes::{Shape, fill, shape};
-use qdist::Vector;
+use super::*;
 use qdist::nalgebra::Matrix2;
 use qdist::support::{BoxShape, Capsule, Ellipsoid, HalfSpace, ShapeError, Sphere};
 

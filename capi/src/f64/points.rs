@@ -4,26 +4,10 @@
 //! climbing from vertex to vertex. The lists must outlive the set or body that is made of them, which is when their
 //! coordinates are read and checked: make it anew when they change.
 
-use super::super::callback::Deadline;
-use super::super::handle::{self, qdist_solver};
-use super::super::layout::gaps;
-use super::super::numbers::{
-    MAX_DIMENSION, as_points, coordinates, dimension, farthest, in_range, padded, reach, tiny,
-};
-use super::super::pointer::{In, Out};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_HULL_POINTS, QDIST_ERROR_WORKSPACE_SIZE,
-    from_graph, from_shape, qdist_interrupt, qdist_status, status,
-};
-use super::answers::{Answers, AnswersAny, exhaustive_of, precise_of, support_any, support_of};
-use super::bodies::{Placed, Stated};
-use super::sets::{qdist_body_f64, qdist_set_f64};
-use core::ffi::c_void;
-use core::marker::PhantomData;
-use qdist::internal::{List, near_unit, one_by_one};
-use qdist::support::{HullGraph, Points, Support, Word, graph_len, large_graph_len};
+use super::*;
+use qdist::internal::{List, near_unit};
+use qdist::support::{HullGraph, Points, Word, graph_len, large_graph_len};
 use qdist::{HullFacet, hull_facets, prepare_hull};
-use qdist::{Real, TwoWords, Vector};
 
 /// The convex hull of `count` points, 1 or more. Coordinate k of point i is points[i * dimension + k].
 #[repr(C)]

@@ -21,17 +21,7 @@
 //! It is exact up to about the square root of the bracket's relative width. With has_rival the minimiser is not unique: then d has
 //! one-sided derivatives, each the least of those at all minimisers.
 
-use super::super::handle::qdist_solver;
-use super::super::layout::{Defaults, gaps, versioned};
-use super::super::numbers::MAX_DIMENSION;
-use super::super::pointer::{In, Out};
-use super::super::status::{qdist_interrupt, qdist_outcome, qdist_plan, qdist_status, status};
-use super::asked::Question;
-use super::bodies::depth;
-use super::sets::{qdist_body_f64, qdist_set_f64};
-use super::unit_sets::qdist_unit_f64;
-use core::ffi::c_void;
-use qdist::Real;
+use super::*;
 
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.

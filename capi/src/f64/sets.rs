@@ -5,17 +5,7 @@
 //! the radius of a ball swept over it. A sphere is a point with a radius, a capsule a segment with a radius, a safety margin
 //! is a radius on anything. Write a support function for your own shapes; the built-in shapes are made of the same parts.
 
-use super::super::callback::{is_mirrored, support};
-use super::super::layout::gaps;
-use super::super::numbers::{flag, lengths, tiny};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_DIMENSION, QDIST_ERROR_NULL, qdist_status, status};
-use super::super::symmetry::{qdist_mirrored, qdist_turning, qdist_unbounded};
-use super::bodies::Placed;
-use core::ffi::c_void;
-use qdist::internal::one_by_one;
-use qdist::support::{Failure, Support};
-use qdist::{Real, Vector};
+use super::*;
 
 /// Writes a point of the core that is farthest along `direction` to `point`.
 ///

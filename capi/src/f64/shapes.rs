@@ -11,15 +11,9 @@
 //! its centre, an ellipsoid's a smaller ellipsoid-like set); its user is the shape, and the code that it returns is a qdist_status. For a shape
 //! in qdist_solve3, take body.set.
 
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, from_shape, qdist_status, status};
-use super::super::symmetry::{mirrored_always, mirrored_sideways, qdist_mirrored};
-use super::answers::{Answers, precise_of, support_of};
-use super::bodies::{Placed, Stated};
-use super::sets::{qdist_body_f64, qdist_set_f64};
+use super::*;
 use qdist::nalgebra::Matrix3;
-use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, Failure, ShapeError, Sphere, Support};
-use qdist::{TwoWords, Vector};
+use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere};
 
 /// All points within `radius` of the origin.
 #[repr(C)]
@@ -89,7 +83,7 @@ macro_rules! shape {
                 <$set>::trusted($($size),+)
             }
         }
-        $crate::layout::gaps!($struct);
+        gaps!($struct);
     };
 }
 pub(super) use shape;

@@ -9,10 +9,7 @@
 //! rare. When either is full, qdist_solve goes on cone by cone in the same memory, and qdist_depth3 ends with
 //! QDIST_CAPACITY and a bracket that is still true; results say how much was used.
 
-use super::super::handle::{self, qdist_solver};
-use super::super::pointer::Out;
-use super::super::status::{qdist_status, status};
-use core::ffi::c_void;
+use super::*;
 
 /// Makes a solver of a dimension of 2 to 6 in `bytes` bytes of memory, aligned to QDIST_WORKSPACE_ALIGN, and stores its address,
 /// which is that of the memory.

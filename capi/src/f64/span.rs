@@ -6,13 +6,7 @@
 //! qdist_solve. Flat means: no wider than the rounding of A's support function. Costs dimension + 1 to 2 * dimension + 2 more support
 //! calls. A program that calls this function contains the solvers of all dimensions.
 
-use super::super::handle::{dimension, qdist_solver};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, qdist_status, status};
-use super::asked::Question;
-use super::query::{qdist_options_f64, qdist_result_f64};
-use super::sets::qdist_set_f64;
-use super::unit_sets::qdist_unit_f64;
+use super::*;
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in the linear span of A, in the dimension of the solver. Arguments as of
 /// qdist_solve2 to qdist_solve6.
@@ -27,7 +21,7 @@ pub extern "C" fn qdist_solve_in_span_f64(
     result: Out<qdist_result_f64>,
 ) -> qdist_status {
     let question = Question { solver, a, q, options, result };
-    status(dimension(&question.solver).and_then(|n| match n {
+    status(handle::dimension(&question.solver).and_then(|n| match n {
         2 => solve_in_span::<2>(&question),
         3 => solve_in_span::<3>(&question),
         4 => solve_in_span::<4>(&question),

@@ -4,17 +4,8 @@
 //! h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
 //! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them.
 
-use super::super::callback::{CallbackUnit, Parts};
-use super::super::layout::gaps;
-use super::super::numbers::{length, semi_axes};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_DIMENSION, code, from_shape, qdist_status, status};
-use super::super::symmetry::qdist_mirrored;
-use super::points::qdist_points_f64;
-use super::unit_shapes::{fill_box, fill_cross, fill_ellipsoid, fill_segment, fill_vertices};
-use core::ffi::c_void;
+use super::*;
 use qdist::qset::{Ball, UnitSet};
-use qdist::support::Failure;
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.

@@ -1,18 +1,6 @@
 //! The unit sets of the library: what each one answers, for dimensions that are known at run time only.
 
-use super::super::numbers::{
-    MAX_DIMENSION, coordinates, dimension, dot, farthest, finite, first, in_range, largest, length, padded, reach,
-    semi_axes,
-};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_ROTATION};
-use super::super::symmetry::mirrored_always;
-use super::answers::AnswersUnit;
-use super::points::qdist_points_f64;
-use super::unit_sets::{
-    UNKNOWN, qdist_box_unit_f64, qdist_cross_unit_f64, qdist_ellipsoid_unit_f64, qdist_segment_unit_f64, qdist_unit_f64,
-};
-use qdist::Real;
+use super::*;
 
 /// Those that are above 0, with their places.
 fn positive(list: &[f64]) -> impl Iterator<Item = (usize, &f64)> {

@@ -13,20 +13,9 @@
 //!       qdist_solve_warm6_f64(solver, &tracker, &a, &q, moved, &options, &result);
 //!   }
 
-use super::super::handle::qdist_solver;
-use super::super::layout::gaps;
-use super::super::numbers::{MAX_DIMENSION, dimension, dot, finite, first, padded};
-use super::super::pointer::{In, Out};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_DIMENSION, QDIST_ERROR_STRUCT_SIZE, qdist_status, status,
-};
-use super::asked::Question;
-use super::query::{qdist_options_f64, qdist_result_f64};
-use super::sets::qdist_set_f64;
-use super::unit_sets::{CheckedUnit, qdist_unit_f64};
+use super::*;
 use qdist::Tracker;
 use qdist::internal::REMEMBERED;
-use qdist::{Real, Vector};
 
 const _: () = assert!(REMEMBERED == 4);
 

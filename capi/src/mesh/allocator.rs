@@ -4,9 +4,7 @@
 //! malloc and free of the system, or yours. It is chosen for the whole process, once, since memory must go back where it came from.
 //! (A static library has a heap interface of its own: your program's malloc is not replaced.)
 
-use super::super::pointer::In;
-use super::super::status::{Check, QDIST_ERROR_ALLOCATOR, QDIST_ERROR_NULL, qdist_status, status};
-use core::ffi::c_void;
+use super::*;
 use core::ptr::null_mut;
 use core::sync::atomic::{AtomicPtr, Ordering};
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -4,15 +4,7 @@
 //! certainty, so the answer is a bracket: no free pose is nearer than `lower`, and `pose` is free, proved by the solid test, at the
 //! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
-use super::super::layout::{Defaults, gaps, versioned};
-use super::super::numbers::finite;
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::guard::guard;
-use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
-use super::model::qdist_mesh_mass;
-use super::pair::{exclusive, qdist_mesh_distance, qdist_mesh_pair, qdist_mesh_pose};
-use core::ffi::{c_char, c_void};
+use super::*;
 use core::ptr::null_mut;
 use qdist::mesh::certificate::Effort;
 use qdist::mesh::{DepthOptions, MeshDepth, Outcome, Progress};

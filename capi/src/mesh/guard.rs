@@ -3,7 +3,7 @@
 //! The C library of meshes is built with unwinding, and a panic becomes QDIST_ERROR_INTERNAL. In a build with `panic = "abort"` the process
 //! ends instead.
 
-use super::super::status::{Check, QDIST_ERROR_BUSY, QDIST_ERROR_INTERNAL, qdist_status, status};
+use super::*;
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
 use std::panic::{AssertUnwindSafe, catch_unwind};

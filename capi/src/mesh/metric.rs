@@ -2,15 +2,7 @@
 //!
 //! How far is one pose of A from another? A length, in each case, that depends on A's motion only.
 
-use super::super::layout::versioned;
-use super::super::numbers::{coordinates, finite};
-use super::super::pointer::In;
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_NONFINITE, QDIST_ERROR_NULL,
-};
-use super::model::qdist_mesh_mass;
-use super::pair::qdist_mesh_pose;
-use core::ffi::c_void;
+use super::*;
 use qdist::mesh::mass::MassProperties;
 use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Sigma};
 use qdist::mesh::optimize::Quadratic;

@@ -18,3 +18,6 @@ pub mod metric;
 pub mod model;
 pub mod pair;
 pub mod tracker;
+
+use crate::vocabulary::*;
+use {depth::*, guard::*, metric::*, model::*, pair::*};

@@ -5,13 +5,7 @@
 //! seen from outside, the mesh bounds a solid and is treated as one: what lies inside collides. Otherwise it is a surface without an
 //! inside (a polygon soup), and queries see the surface only.
 
-use super::super::layout::{gaps, versioned};
-use super::super::pointer::{In, Out};
-use super::super::status::{
-    QDIST_ERROR_CAPACITY, QDIST_ERROR_MESH_COLLINEAR, QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_INDEX,
-    QDIST_ERROR_MESH_NOT_SOLID, QDIST_ERROR_MESH_VERTEX, qdist_status,
-};
-use super::guard::guard;
+use super::*;
 use qdist::mesh::certificate::BuildOptions;
 use qdist::mesh::mass::MassProperties;
 use qdist::mesh::{MeshError, Model, ModelError};

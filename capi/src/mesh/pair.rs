@@ -3,14 +3,7 @@
 //! Two meshes and the memory that their queries reuse. A moves, B rests. A pair serves one call at a time; make one per thread, meshes are
 //! shared.
 
-use super::super::layout::gaps;
-use super::super::numbers::coordinates;
-use super::super::pointer::{In, Out};
-use super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, QDIST_ERROR_NONFINITE, QDIST_ERROR_ROTATION, qdist_status,
-};
-use super::guard::{Exclusive, Taken, caught, guard};
-use super::model::qdist_mesh;
+use super::*;
 use qdist::mesh::{Contact, DepthSolver, Distance, Feature, MAX_COORDINATE, Model};
 use qdist::nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use std::sync::Arc;

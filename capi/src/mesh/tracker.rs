@@ -17,16 +17,7 @@
 //! It follows one valley of the free space. Cold answers from another thread, with a pair of its own, show it better ones. Contacts at depth.pose are
 //! qdist_mesh_pair_contacts of another pair of the same meshes.
 
-use super::super::layout::{Defaults, gaps, versioned};
-use super::super::numbers::{finite, flag};
-use super::super::pointer::{In, Out};
-use super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_INTERNAL, qdist_status, status};
-use super::depth::{QDIST_MESH_FAST, effort, qdist_mesh_depth, qdist_mesh_effort};
-use super::guard::{Exclusive, Taken, caught, guard};
-use super::metric::{Chosen, QDIST_MESH_DISP, qdist_mesh_metric, qdist_mesh_own_metric};
-use super::model::{qdist_mesh, qdist_mesh_mass};
-use super::pair::qdist_mesh_pose;
-use core::ffi::c_void;
+use super::*;
 use core::ptr::null_mut;
 use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
 use std::sync::Arc;

@@ -4,16 +4,7 @@
 //! primitives: the wrenches that one contact can exert on the object with its full normal force. A contact of a finger link has a
 //! Jacobian; its active primitive counts only forces that joint torques generate. One of the palm has none, and keeps all.
 
-use super::super::super::grasp::{QDIST_FRICTIONLESS, QDIST_HARD, QDIST_SOFT, all_of, from_contact, qdist_friction};
-use super::super::super::layout::gaps;
-use super::super::super::numbers::{flag, lengths};
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status};
-use qdist::Vector;
-use qdist::grasp::{
-    ActiveForces, Contact, ContactError, Friction, HandContact, Jacobian, MAX_JOINTS, Primitive, Subspace, WrenchFrame,
-    default_tolerance,
-};
+use super::*;
 use qdist::internal::usable;
 
 const _: () = assert!(MAX_JOINTS == 8);

@@ -6,20 +6,8 @@
 //! program, each time with a proof: 0.1 microseconds where the limits do not count, else some 10 for one contact to 130 for four (`./x figures`),
 //! with up to 27 KB of stack in double (`./x stack`). Without limits a passive finger exerts what its contacts' primitives do; a palm is a finger without joints.
 
-use super::super::super::grasp::{force_model, from_grasp, norm as checked_norm, qdist_force_model, qdist_norm};
-use super::super::super::numbers::finite;
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{Check, QDIST_ERROR_CALLBACK, QDIST_ERROR_FINGER, qdist_status, status};
-use super::super::sets::qdist_set_f64;
-use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
-use super::forces::{qdist_force_memory_f64, qdist_force_options_f64, qdist_forces_f64, resist};
-use super::wrenches::Wrenches;
+use super::*;
 use core::borrow::Borrow;
-use qdist::Vector;
-use qdist::grasp::{
-    Contact, ContactError, Contribution, Finger, Friction, GraspError, HandContact, MAX_CONTACTS, MAX_JOINTS, WrenchSet,
-};
-use qdist::support::{Failure, Support};
 
 /// A finger, made by qdist_finger_init. Plain bytes without addresses: it may be copied and moved.
 #[repr(C)]

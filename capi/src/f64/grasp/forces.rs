@@ -4,17 +4,8 @@
 //! contacts (`./x figures`), no solver and no memory but the stack, 16 KB in double (`./x stack`). Size is measured in force caps: 1 is the caps
 //! themselves.
 
-use super::super::super::grasp::{force_outcome, from_contact, from_force, qdist_force_outcome};
-use super::super::super::layout::{Defaults, gaps, versioned};
-use super::super::super::numbers::{finite, length, padded};
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, code, qdist_status, status};
-use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
-use super::wrenches::{Wrenches, qdist_wrenches_f64};
-use qdist::Vector;
-use qdist::grasp::{Contribution, ForceOptions, ForceOutcome, ForceSolver, WrenchSet};
+use super::*;
 use qdist::internal::check_forces;
-use qdist::support::Failure;
 
 /// When a search for contact forces ends. NULL stands for the defaults.
 #[repr(C)]

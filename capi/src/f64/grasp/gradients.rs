@@ -3,17 +3,7 @@
 //! How d changes with what a grasp is made of, for planners that improve grasps. The weakest direction of a result is refined to rounding by
 //! Newton's method, in some 10 to 100 microseconds (`./x figures`); where d has no gradient there, `kink` says why.
 
-use super::super::super::grasp::{all_of, kink, qdist_kink};
-use super::super::super::layout::{gaps, versioned};
-use super::super::super::numbers::{flag, padded};
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::super::asked::to_answer;
-use super::super::query::qdist_result_f64;
-use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
-use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64, tolerance};
-use super::wrenches::{Wrenches, qdist_wrenches_f64};
-use qdist::grasp::{ContactGradient, HandContact, MAX_JOINTS, Refined};
+use super::*;
 
 /// The weakest direction to rounding.
 #[repr(C)]

@@ -5,18 +5,7 @@
 //! A preset is what one tool does, as read in its source; Q is the unit ball in all of them. Fill in position, normal and friction of each
 //! contact, let the preset complete it, make pyramids with its frame and layout, and a set of them with its norm.
 
-use super::super::super::grasp::{
-    QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_DEX_NET, QDIST_LAYOUT_GRASPIT, QDIST_LAYOUT_INSCRIBED, QDIST_TOOL_DEX_NET,
-    QDIST_TOOL_FROGGER, QDIST_TOOL_GRASPIT, from_contact, from_norm, norm as checked_norm, qdist_layout, qdist_norm,
-    qdist_tool,
-};
-use super::super::super::layout::gaps;
-use super::super::super::numbers::lengths;
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{Check, QDIST_ERROR_ARGUMENT, qdist_status, status};
-use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
-use qdist::Vector;
-use qdist::grasp::{Contact, ContactError, Layout, Norm, Preset, WrenchFrame};
+use super::*;
 
 /// Where the edges of friction pyramids are.
 #[repr(C)]

@@ -8,3 +8,11 @@ pub mod linearized;
 pub mod pyramids;
 pub mod quality;
 pub mod wrenches;
+
+use super::*;
+use qdist::grasp::{
+    ActiveForces, Closure, Contact, ContactGradient, Contribution, Finger, ForceOptions, ForceSolver, HandContact,
+    Jacobian, Layout, MAX_CONTACTS, MAX_JOINTS, Preset, Primitive, PyramidalCone, Refined, Subspace, WrenchFrame,
+    WrenchSet, default_tolerance,
+};
+use {contacts::*, forces::*, linearized::*, wrenches::*};

@@ -2,25 +2,9 @@
 //!
 //! Pyramids of contacts, by the layout of a preset or one of yours, and their wrench sets.
 
-use super::super::super::grasp::{
-    QDIST_HARD, QDIST_SOFT, from_grasp, norm as checked_norm, qdist_friction, qdist_norm,
-};
-use super::super::super::layout::gaps;
-use super::super::super::numbers::{farthest, in_range, lengths};
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{
-    Check, QDIST_ERROR_ARGUMENT, QDIST_ERROR_CONTACT_FRICTION, QDIST_ERROR_CONTACT_WRENCH, qdist_status, status,
-};
-use super::super::sets::qdist_set_f64;
-use super::super::unit_sets::qdist_segment_unit_f64;
-use super::contacts::{qdist_contact_f64, qdist_wrench_frame_f64};
-use super::linearized::qdist_layout_f64;
-use super::wrenches::Wrenches;
-use qdist::grasp::{Contact, ContactError, Contribution, Friction, GraspError, PyramidalCone, WrenchSet};
+use super::*;
 use qdist::internal::{opposed, usable};
 use qdist::qset::UnitSet;
-use qdist::support::{Failure, Support};
-use qdist::{Real, Vector};
 
 /// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
 #[repr(C)]

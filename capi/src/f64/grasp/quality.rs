@@ -3,19 +3,7 @@
 //! Force closure, and the best of many grasps. The depth itself, contact forces for one wrench (a segment as Q) and "is it at least so
 //! much?" (use_threshold of the options) are what qdist_solve6 answers.
 
-use super::super::super::grasp::{QDIST_CLOSURE_CLOSED, QDIST_CLOSURE_OPEN, QDIST_CLOSURE_UNDECIDED, qdist_closure};
-use super::super::super::handle::{self, qdist_solver};
-use super::super::super::layout::{gaps, versioned};
-use super::super::super::numbers::padded;
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{QDIST_ERROR_ARGUMENT, QDIST_ERROR_CALLBACK, overflow, qdist_status, status};
-use super::super::asked::{convert, from_answer};
-use super::super::query::{qdist_options_f64, qdist_result_f64};
-use super::super::sets::{CheckedSet, qdist_set_f64};
-use super::super::unit_sets::{CheckedUnit, qdist_unit_f64};
-use super::wrenches::behind;
-use qdist::grasp::Closure;
-use qdist::support::Support;
+use super::*;
 
 /// Is a grasp force-closed?
 #[repr(C)]

@@ -5,19 +5,7 @@
 //! in the smallest subspace, for the active wrenches of fingers that cannot move in all directions; a segment as Q asks how large one wrench
 //! may be. In the result, `direction` is the weakest one, and the wrench of d * Q that is farthest along it the one that is hardest to exert.
 
-use super::super::super::grasp::{norm, qdist_norm};
-use super::super::super::numbers::lengths;
-use super::super::super::pointer::{In, Out};
-use super::super::super::status::{Check, qdist_status, status};
-use super::super::answers::{Answers, support_of};
-use super::super::sets::qdist_set_f64;
-use super::contacts::qdist_primitive_f64;
-use core::ffi::c_void;
-use core::marker::PhantomData;
-use qdist::Vector;
-use qdist::grasp::{Contribution, Primitive, WrenchSet};
-use qdist::internal::one_by_one;
-use qdist::support::{Failure, Support};
+use super::*;
 
 /// The wrench set of a list of primitives, 1 or more, with {0} in it. The list must outlive the sets that are made of it.
 #[repr(C)]
@@ -83,13 +71,13 @@ impl Wrenches for qdist_wrenches_f64 {
     type Contribution<'a> = Primitive<f64>;
     const MIRRORED: bool = true;
     fn checked(&self) -> Check<WrenchSet<'_, f64>> {
-        let norm = norm(self.norm)?;
+        let norm = checked_norm(self.norm)?;
         let list = self.primitives.array(Some(self.count as usize))?;
         Ok(WrenchSet::new(qdist_primitive_f64::checked(list)?, norm))
     }
     fn unchecked(&self) -> Check<WrenchSet<'_, f64>> {
         let list = self.primitives.array(Some(self.count as usize))?;
-        Ok(WrenchSet::without_size(qdist_primitive_f64::list(list), norm(self.norm)?))
+        Ok(WrenchSet::without_size(qdist_primitive_f64::list(list), checked_norm(self.norm)?))
     }
 }
 
