@@ -16,7 +16,7 @@
 //!
 //! A pointer is checked where it comes in, and is a reference from there on. So exported functions are safe code, and `unsafe` stands in [`pointer`],
 //! [`callback`] and [`handle`], where a struct of the header is behind a `user` ([`f64::answers`]), and in a few lines elsewhere, each with the
-//! fact that makes it right. (The compiler's lint `unsafe_code` also refuses names for C, which every chapter has; so a test looks, `house`.)
+//! fact that makes it right. (The compiler's lint `unsafe_code` also refuses names for C, which every chapter has; so a test looks, `tests/core/house.rs`.)
 //!
 //! Nothing here switches between dimensions, shapes or scalars at run time where that would link much code which a program does not use: nearly
 //! every entry point names all three.
@@ -34,8 +34,6 @@ pub mod f64;
 #[cfg(feature = "grasp")]
 pub mod grasp;
 pub mod handle;
-#[cfg(test)]
-mod house;
 mod layout;
 #[cfg(feature = "mesh")]
 pub mod mesh;

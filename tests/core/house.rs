@@ -1,5 +1,5 @@
 //! Arrows point down: no file of `src/` imports from a storey above its own, and no folder has a circle. The storeys are those that the essay in
-//! `lib.rs` draws. And nothing is too long to be read: no file, no function.
+//! `lib.rs` draws. Nothing is too long to be read: no file, no function. And `unsafe` of the C layer stays where it belongs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -201,4 +201,34 @@ fn nothing_is_too_long_to_be_read() {
         }
     }
     assert!(long.is_empty(), "longer than {LONGEST_FILE} lines, or functions than {LONGEST_FUNCTION}: {long:#?}");
+}
+
+/// The files of the C layer where memory is touched, and where the caller's functions are called.
+const UNSAFE: [&str; 7] =
+    ["pointer.rs", "layout.rs", "callback.rs", "handle.rs", "panic.rs", "f64/answers.rs", "mesh/allocator.rs"];
+/// How often elsewhere in it, all files together: lists of the caller seen as lists of the library, `user` behind a function of the library, handles
+/// that are boxes, the callbacks of meshes.
+const ELSEWHERE: usize = 36;
+
+/// (The compiler's lint `unsafe_code` also refuses names for C, which every function of a header has.)
+#[test]
+fn unsafe_of_the_c_layer_is_where_memory_is_touched_and_says_why() {
+    let mut elsewhere = 0;
+    let root = Path::new("capi/src");
+    for file in files(root) {
+        let (path, lines) = (file.strip_prefix(root).unwrap().display().to_string(), code(&file));
+        for (index, line) in lines.iter().enumerate() {
+            let bare = line.split("//").next().unwrap().replace("#[unsafe(no_mangle)]", "");
+            let is_type = line.contains("unsafe extern \"C\" fn(") || line.contains("pub type ");
+            if !bare.contains("unsafe") || is_type {
+                continue;
+            }
+            elsewhere += usize::from(!UNSAFE.contains(&path.as_str()));
+            if line.contains("unsafe {") || line.contains("unsafe impl") {
+                let before = &lines[index.saturating_sub(6)..=index];
+                assert!(before.iter().any(|line| line.contains("SAFETY:")), "{path}:{}: {line}", index + 1);
+            }
+        }
+    }
+    assert!(elsewhere <= ELSEWHERE, "{elsewhere} times outside of {UNSAFE:?}");
 }
