@@ -111,31 +111,21 @@ pub const QDIST_FORCES_ITERATIONS: qdist_force_outcome = 4;
 /// A primitive is no number; the status is QDIST_ERROR_CALLBACK.
 pub const QDIST_FORCES_FAILED: qdist_force_outcome = 5;
 
-pub(super) fn force_outcome(outcome: ForceOutcome) -> qdist_force_outcome {
-    match outcome {
-        ForceOutcome::Converged => QDIST_FORCES_CONVERGED,
-        ForceOutcome::Above => QDIST_FORCES_ABOVE,
-        ForceOutcome::NotResistible => QDIST_FORCES_NOT_RESISTIBLE,
-        ForceOutcome::Precision => QDIST_FORCES_PRECISION,
-        ForceOutcome::Iterations => QDIST_FORCES_ITERATIONS,
-        ForceOutcome::SupportFailed => QDIST_FORCES_FAILED,
-        _ => QDIST_FORCES_PRECISION,
-    }
+// (What is not known one day: the bracket would be true.)
+outcomes! {
+    force_outcome(ForceOutcome) -> qdist_force_outcome, or QDIST_FORCES_PRECISION; force_outcome_name, or c"unknown outcome";
+    Converged = QDIST_FORCES_CONVERGED, c"converged";
+    Above = QDIST_FORCES_ABOVE, c"above";
+    NotResistible = QDIST_FORCES_NOT_RESISTIBLE, c"not resistible";
+    Precision = QDIST_FORCES_PRECISION, c"precision";
+    Iterations = QDIST_FORCES_ITERATIONS, c"iterations";
+    SupportFailed = QDIST_FORCES_FAILED, c"failed";
 }
 
 /// The name of an outcome, e.g. "not resistible". A static string, never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_force_outcome_string(outcome: qdist_force_outcome) -> *const c_char {
-    match outcome {
-        QDIST_FORCES_CONVERGED => c"converged",
-        QDIST_FORCES_ABOVE => c"above",
-        QDIST_FORCES_NOT_RESISTIBLE => c"not resistible",
-        QDIST_FORCES_PRECISION => c"precision",
-        QDIST_FORCES_ITERATIONS => c"iterations",
-        QDIST_FORCES_FAILED => c"failed",
-        _ => c"unknown outcome",
-    }
-    .as_ptr()
+    force_outcome_name(outcome)
 }
 
 pub(super) fn from_force(error: ForceError) -> qdist_status {

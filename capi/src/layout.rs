@@ -46,13 +46,19 @@ macro_rules! versioned {
 }
 pub(crate) use versioned;
 
+/// A struct of the header, as C begins one.
+pub(super) trait Zeros: Sized {
+    /// `= {0}`
+    const ZERO: Self;
+}
+
 /// A struct of the header: where it has bytes that belong to no field.
 pub(super) trait Gaps {
     /// Where they begin, and how many.
     const GAPS: &'static [(usize, usize)];
 }
 
-/// `gaps!(type, field..next, last..)`: there may be a gap between these fields, and behind the last one. A field of a field is written with a dot.
+/// `gaps!(type, field..next, last..)`: of a struct of the header; there may be a gap between these fields, and behind the last one. A field of a field is written with a dot.
 macro_rules! gaps {
     ($type:ty $(, $($from:ident).+ .. $($until:ident)?)*) => {
         impl $crate::layout::Gaps for $type {
@@ -61,6 +67,11 @@ macro_rules! gaps {
                     + $crate::layout::field_size(|all: &$type| &all.$($from).+);
                 (end, $crate::layout::gaps!(@until $type, $($until)?) - end)
             }),*];
+        }
+
+        impl $crate::layout::Zeros for $type {
+            // SAFETY: numbers, pointers and optional functions of C. (The compiler refuses to make zeros of what they are no value of.)
+            const ZERO: Self = unsafe { core::mem::zeroed() };
         }
     };
     (@until $type:ty, $until:ident) => { core::mem::offset_of!($type, $until) };

@@ -40,6 +40,13 @@ pub fn finite<T: Real>(list: &[T]) -> Check {
     if list.iter().all(|x| x.finite()) { Ok(()) } else { Err(QDIST_ERROR_NONFINITE) }
 }
 
+/// Finite, and >= 0.
+#[cfg(feature = "mesh")]
+pub fn not_negative(x: f64) -> Check<f64> {
+    finite(&[x])?;
+    if x < 0.0 { Err(QDIST_ERROR_ARGUMENT) } else { Ok(x) }
+}
+
 pub fn flag(x: u32) -> Check<bool> {
     match x {
         0 => Ok(false),

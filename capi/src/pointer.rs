@@ -44,9 +44,6 @@ impl<S> Clone for In<S> {
 impl<S> Copy for In<S> {}
 
 impl<S> In<S> {
-    #[cfg(feature = "mesh")]
-    pub(super) const NULL: Self = Self(core::ptr::null());
-
     /// # Safety
     /// As C callers promise, see above.
     #[inline(always)]
@@ -130,6 +127,15 @@ impl<S> In<S> {
             self.0.cast::<u8>().copy_to(value.as_mut_ptr().cast(), size);
             Ok(value.assume_init())
         }
+    }
+
+    /// The same; NULL: the defaults.
+    #[cfg(feature = "grasp")]
+    pub(super) fn or_default(&self) -> Check<S>
+    where
+        S: Defaults,
+    {
+        if self.0.is_null() { Ok(S::defaults()) } else { self.version() }
     }
 }
 

@@ -190,36 +190,66 @@ pub extern "C" fn qdist_status_string(status: qdist_status) -> *const c_char {
 /// The name of an outcome, e.g. "converged". A static string, never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_outcome_string(outcome: qdist_outcome) -> *const c_char {
-    match outcome {
-        QDIST_CONVERGED => c"converged",
-        QDIST_ABOVE => c"above",
-        QDIST_BELOW => c"below",
-        QDIST_SEPARATED => c"separated",
-        QDIST_TOUCHING => c"touching",
-        QDIST_PRECISION => c"precision",
-        QDIST_CAPACITY => c"capacity",
-        QDIST_ITERATIONS => c"iterations",
-        QDIST_DEGENERATE => c"degenerate",
-        QDIST_SUPPORT_FAILED => c"support failed",
-        QDIST_INTERRUPTED => c"interrupted",
-        QDIST_UNBOUNDED => c"unbounded",
-        _ => c"unknown outcome",
-    }
-    .as_ptr()
+    outcome_name(outcome)
 }
 
 /// The name of a plan, e.g. "rays". A static string, never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_plan_string(plan: qdist_plan) -> *const c_char {
-    match plan {
-        QDIST_PLAN_EXPANSION => c"expansion",
-        QDIST_PLAN_DISTANCE => c"distance",
-        QDIST_PLAN_RAYS => c"rays",
-        QDIST_PLAN_CONES => c"cones",
-        QDIST_PLAN_WARM => c"warm",
-        _ => c"unknown plan",
-    }
-    .as_ptr()
+    plan_name(plan)
+}
+
+/// A table of outcomes: of the library, in C, and by name. Makes `fn outcome(Outcome) -> qdist_outcome`, which takes what the library may know one day for
+/// `other`, and a function that names them.
+macro_rules! outcomes {
+    (
+        $of:ident($enum:ident) -> $code:ty, or $other:ident; $name:ident, or $unknown:literal;
+        $($variant:ident = $value:ident, $words:literal;)*
+    ) => {
+        pub(crate) fn $of(outcome: $enum) -> $code {
+            match outcome {
+                $($enum::$variant => $value,)*
+                _ => $other,
+            }
+        }
+
+        fn $name(code: $code) -> *const c_char {
+            match code {
+                $($value => $words,)*
+                _ => $unknown,
+            }
+            .as_ptr()
+        }
+    };
+}
+#[cfg(feature = "grasp")]
+pub(crate) use outcomes;
+
+// (What is not known one day: the bracket would be true.)
+outcomes! {
+    outcome(Outcome) -> qdist_outcome, or QDIST_PRECISION; outcome_name, or c"unknown outcome";
+    Converged = QDIST_CONVERGED, c"converged";
+    Above = QDIST_ABOVE, c"above";
+    Below = QDIST_BELOW, c"below";
+    Separated = QDIST_SEPARATED, c"separated";
+    Touching = QDIST_TOUCHING, c"touching";
+    Precision = QDIST_PRECISION, c"precision";
+    Capacity = QDIST_CAPACITY, c"capacity";
+    Iterations = QDIST_ITERATIONS, c"iterations";
+    Degenerate = QDIST_DEGENERATE, c"degenerate";
+    SupportFailed = QDIST_SUPPORT_FAILED, c"support failed";
+    Interrupted = QDIST_INTERRUPTED, c"interrupted";
+    Unbounded = QDIST_UNBOUNDED, c"unbounded";
+}
+
+// (Two bodies on one axis are measured by qdist_depth3 only, which does not tell.)
+outcomes! {
+    plan(Plan) -> qdist_plan, or QDIST_PLAN_EXPANSION; plan_name, or c"unknown plan";
+    Expansion = QDIST_PLAN_EXPANSION, c"expansion";
+    Distance = QDIST_PLAN_DISTANCE, c"distance";
+    Rays = QDIST_PLAN_RAYS, c"rays";
+    Cones = QDIST_PLAN_CONES, c"cones";
+    Warm = QDIST_PLAN_WARM, c"warm";
 }
 
 /// `Ok`, or the status that says what is wrong.
@@ -235,6 +265,12 @@ pub(super) fn status(check: Check) -> qdist_status {
     check.err().unwrap_or(QDIST_OK)
 }
 
+/// What a function of C does, as its caller sees it.
+#[inline(always)]
+pub(super) fn status_of(call: impl FnOnce() -> Check) -> qdist_status {
+    status(call())
+}
+
 /// Did arithmetic overflow, though no callback is to blame? Then nothing is written.
 pub(super) fn overflow(failure: Option<Failure>) -> Check {
     if failure == Some(Failure(qdist::TOO_LARGE)) { Err(QDIST_ERROR_NONFINITE) } else { Ok(()) }
@@ -243,36 +279,6 @@ pub(super) fn overflow(failure: Option<Failure>) -> Check {
 /// The code of a failure; 0 for none.
 pub(super) fn code(failure: Option<Failure>) -> i32 {
     failure.map_or(0, |Failure(code)| code)
-}
-
-pub(super) fn outcome(outcome: Outcome) -> qdist_outcome {
-    match outcome {
-        Outcome::Converged => QDIST_CONVERGED,
-        Outcome::Above => QDIST_ABOVE,
-        Outcome::Below => QDIST_BELOW,
-        Outcome::Separated => QDIST_SEPARATED,
-        Outcome::Touching => QDIST_TOUCHING,
-        Outcome::Precision => QDIST_PRECISION,
-        Outcome::Capacity => QDIST_CAPACITY,
-        Outcome::Iterations => QDIST_ITERATIONS,
-        Outcome::Degenerate => QDIST_DEGENERATE,
-        Outcome::SupportFailed => QDIST_SUPPORT_FAILED,
-        Outcome::Interrupted => QDIST_INTERRUPTED,
-        Outcome::Unbounded => QDIST_UNBOUNDED,
-        // (There are no others. The bracket would be true.)
-        _ => QDIST_PRECISION,
-    }
-}
-
-pub(super) fn plan(plan: Plan) -> qdist_plan {
-    match plan {
-        Plan::Distance => QDIST_PLAN_DISTANCE,
-        Plan::Rays => QDIST_PLAN_RAYS,
-        Plan::Cones => QDIST_PLAN_CONES,
-        Plan::Warm => QDIST_PLAN_WARM,
-        // (Expansion. Two bodies on one axis are measured by qdist_depth3 only, which does not tell.)
-        _ => QDIST_PLAN_EXPANSION,
-    }
 }
 
 pub(super) fn from_shape(error: ShapeError) -> qdist_status {

@@ -16,16 +16,12 @@ pub extern "C" fn qdist_version() -> u32 {
     (QDIST_VERSION_MAJOR << 16) | (QDIST_VERSION_MINOR << 8) | QDIST_VERSION_PATCH
 }
 
-/// The number in decimal digits.
+/// A number of Cargo.toml.
 const fn number(digits: &str) -> u32 {
-    let bytes = digits.as_bytes();
-    let mut value = 0;
-    let mut i = 0;
-    while i < bytes.len() {
-        value = 10 * value + (bytes[i] - b'0') as u32;
-        i += 1;
+    match u32::from_str_radix(digits, 10) {
+        Ok(number) => number,
+        Err(_) => panic!(),
     }
-    value
 }
 
 // The header's generator reads numbers, not `env!`; so the compiler compares the two.

@@ -60,12 +60,11 @@ unsafe extern "C" fn support<A: Answers<N>, const N: usize, const EXHAUSTIVE: bo
 ) -> i32 {
     // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
     let arguments = unsafe { arguments::<A::Struct, N, N>(user, direction, point) };
-    let ask = || {
+    status_of(|| {
         let (of, u, room) = arguments?;
         room.write(A::farthest(of, u, EXHAUSTIVE)?.into());
         Ok(())
-    };
-    status(ask())
+    })
 }
 
 unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
@@ -90,10 +89,35 @@ unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
 
 // ------------------------------------------------------------------------------------------------- run-time dimensions
 
-/// The same for a struct that knows its dimension at run time only.
+/// A struct that knows its dimension at run time only.
+pub(super) trait Dimensioned: 'static {
+    fn dimension(&self) -> Check<usize>;
+}
+
+/// `dimensioned!(type, field)`
+macro_rules! dimensioned {
+    ($($struct:ty, $field:ident;)*) => {
+        $(impl Dimensioned for $struct {
+            fn dimension(&self) -> Check<usize> {
+                dimension(self.$field)
+            }
+        })*
+    };
+}
+
+dimensioned! {
+    qdist_points_f64, dimension;
+    qdist_pair_f64, dimension;
+    qdist_linear_f64, rows;
+    qdist_ellipsoid_unit_f64, dimension;
+    qdist_box_unit_f64, dimension;
+    qdist_cross_unit_f64, dimension;
+    qdist_segment_unit_f64, dimension;
+}
+
+/// How such a struct answers as a set.
 pub(super) trait AnswersAny: 'static {
-    type Struct: 'static;
-    fn dimension(of: &Self::Struct) -> Check<usize>;
+    type Struct: Dimensioned;
     /// A point, or a code; `u` has as many numbers as the dimension, of which the answer's first count.
     fn farthest(of: &Self::Struct, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]>;
     /// Does the set not change when these coordinates change sign?
@@ -109,14 +133,13 @@ pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: boo
 ) -> i32 {
     // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
     let (of, u, room) = unsafe { (In::<A::Struct>::new(user.cast()), In::new(direction), Out::new(point)) };
-    let ask = || {
+    status_of(|| {
         let of = of.get()?;
-        let n = A::dimension(of)?;
+        let n = of.dimension()?;
         let u = u.array(Some(n))?;
         room.checked()?;
         put_first(&room, &A::farthest(of, u, EXHAUSTIVE)?, n)
-    };
-    status(ask())
+    })
 }
 
 pub(super) unsafe extern "C" fn mirrored_any<A: AnswersAny>(user: *mut c_void, signs: u32) -> i32 {
@@ -135,8 +158,7 @@ fn put_first(room: &Out<f64>, point: &[f64; MAX_DIMENSION], n: usize) -> Check {
 // ------------------------------------------------------------------------------------------------- unit sets
 
 /// How a struct answers as a unit set.
-pub(super) trait AnswersUnit: 'static {
-    fn dimension(&self) -> Check<usize>;
+pub(super) trait AnswersUnit: Dimensioned {
     /// h_Q(u)
     fn value(&self, u: &[f64]) -> Check<f64>;
     /// A point with u.q = h_Q(u).
@@ -180,22 +202,20 @@ unsafe extern "C" fn unit_value<S: AnswersUnit>(user: *mut c_void, direction: *c
 unsafe extern "C" fn unit_point<S: AnswersUnit>(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
     let (of, u, room) = unsafe { (In::<S>::new(user.cast()), In::new(direction), Out::new(point)) };
-    let ask = || {
+    status_of(|| {
         let of = of.get()?;
         let n = of.dimension()?;
         put_first(&room, &of.point(u.array(Some(n))?)?, n)
-    };
-    status(ask())
+    })
 }
 
 unsafe extern "C" fn unit_vertex<S: AnswersUnit>(user: *mut c_void, index: u32, point: *mut f64) -> i32 {
     // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
     let (of, room) = unsafe { (In::<S>::new(user.cast()), Out::new(point)) };
-    let ask = || {
+    status_of(|| {
         let of = of.get()?;
         put_first(&room, &of.vertex(index as usize)?, of.dimension()?)
-    };
-    status(ask())
+    })
 }
 
 unsafe extern "C" fn unit_mirrored<S: AnswersUnit>(user: *mut c_void, signs: u32) -> i32 {

@@ -3,7 +3,6 @@
 
 use super::*;
 use qdist::internal;
-use qdist::nalgebra::SMatrix;
 use qdist::support::{HalfSpace, Join, Rigid, Symmetry, Turning};
 
 /// What a body states about its set, beside what the set states itself.
@@ -80,6 +79,39 @@ pub(super) trait Placed<const N: usize>: Copy + Gaps + 'static {
         body.put(Self::new(*set, Stated::NOTHING))
     }
 }
+
+/// `placed!(type, dimension, identity, fields that only this type has)`
+macro_rules! placed {
+    ($body:ty, $n:literal, $identity:expr $(, $own:ident)*) => {
+        impl Placed<$n> for $body {
+            fn new(set: qdist_set_f64, stated: Stated<$n>) -> Self {
+                let Stated { center, spread, rolling_radius, extents, errors, precise, unbounded, .. } = stated;
+                $(let $own = stated.$own;)*
+                let (rotation, translation) = ($identity, [0.0; $n]);
+                Self { set, rotation, translation, center, spread, rolling_radius, extents, errors, precise, unbounded, $($own),* }
+            }
+            #[inline(always)]
+            fn set(&self) -> &qdist_set_f64 {
+                &self.set
+            }
+            #[inline(always)]
+            #[allow(clippy::needless_update)] // (Of a type that has all fields.)
+            fn stated(&self) -> Stated<$n> {
+                let &Self { center, spread, rolling_radius, extents, errors, precise, unbounded, $($own,)* .. } = self;
+                Stated { center, spread, rolling_radius, extents, errors, precise, unbounded, $($own,)* ..Stated::NOTHING }
+            }
+            #[inline(always)]
+            fn rotation(&self) -> SMatrix<f64, $n, $n> {
+                SMatrix::from_row_slice(&self.rotation)
+            }
+            #[inline(always)]
+            fn translation(&self) -> Vector<f64, $n> {
+                Vector::from(self.translation)
+            }
+        }
+    };
+}
+pub(super) use placed;
 
 /// A body that has passed the checks, where it lies, as a [`Support`] in its own frame.
 pub(super) struct Checked<'a, B>(&'a B);
@@ -251,7 +283,7 @@ pub(super) trait Half<const N: usize>: 'static {
         body.checked()?;
         shape.get()?.set()?;
         let set =
-            qdist_set_f64 { support: Some(refuse), user: shape.user(), dimension: N as u32, ..qdist_set_f64::NONE };
+            qdist_set_f64 { support: Some(refuse), user: shape.user(), dimension: N as u32, ..qdist_set_f64::ZERO };
         body.put(Self::Body::new(set, Stated { unbounded: Some(answer::<Self, N>), ..Stated::NOTHING }))
     }
 }
@@ -303,7 +335,7 @@ unsafe extern "C" fn answer<H: Half<N>, const N: usize>(
             Out::<qdist_depth_f64>::new(result.cast()),
         )
     };
-    let solve = || {
+    status_of(|| {
         let (a, b) = (Either::new::<H>(&a)?, Either::new::<H>(&b)?);
         let (options, _) = convert::<N>(options)?;
         let (a, b) = (a.place().map_err(from_body)?, b.place().map_err(from_body)?);
@@ -311,8 +343,7 @@ unsafe extern "C" fn answer<H: Half<N>, const N: usize>(
         overflow(depth.failure)?;
         result.put_version(from_depth(&depth))?;
         conclude(depth.outcome)
-    };
-    status(solve())
+    })
 }
 
 // ------------------------------------------------------------------------------------------------------------- query

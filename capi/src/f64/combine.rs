@@ -110,7 +110,7 @@ impl qdist_pair_f64 {
             mirrored: if a.mirrored.and(b.mirrored).is_some() { Some(mirrored_any::<A>) } else { None },
             user: pair.user(),
             dimension: n as u32,
-            ..qdist_set_f64::NONE
+            ..qdist_set_f64::ZERO
         }
     }
 }
@@ -120,9 +120,6 @@ struct Sum<const DIFFERENCE: bool>;
 
 impl<const DIFFERENCE: bool> AnswersAny for Sum<DIFFERENCE> {
     type Struct = qdist_pair_f64;
-    fn dimension(pair: &qdist_pair_f64) -> Check<usize> {
-        dimension(pair.dimension)
-    }
     /// x + sign * y, with x along the direction in `a` and y along sign * direction in `b`.
     fn farthest(pair: &qdist_pair_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
         let sign = if DIFFERENCE { -1.0 } else { 1.0 };
@@ -163,9 +160,6 @@ struct Join;
 
 impl AnswersAny for Join {
     type Struct = qdist_pair_f64;
-    fn dimension(pair: &qdist_pair_f64) -> Check<usize> {
-        dimension(pair.dimension)
-    }
     /// The farther of the points of `a` and `b`, the larger radius' excess put on.
     fn farthest(pair: &qdist_pair_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
         let (a, b) = (pair.a.get()?, pair.b.get()?);
@@ -233,9 +227,6 @@ struct Linear;
 
 impl AnswersAny for Linear {
     type Struct = qdist_linear_f64;
-    fn dimension(map: &qdist_linear_f64) -> Check<usize> {
-        dimension(map.rows)
-    }
     fn farthest(map: &qdist_linear_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
         let (matrix, columns) = (map.matrix()?, dimension(map.columns)?);
         let set = map.set.get()?;
@@ -292,6 +283,6 @@ fn fill_linear(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> Check {
         error,
         dimension: linear.rows,
         contains_origin: (shift.iter().all(|&x| x == 0.0) && inner.knows_origin(columns)).into(),
-        ..qdist_set_f64::NONE
+        ..qdist_set_f64::ZERO
     })
 }

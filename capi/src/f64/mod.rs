@@ -20,4 +20,7 @@ mod unit_shapes;
 pub mod warm;
 
 use crate::vocabulary::*;
-use {answers::*, asked::*, bodies::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, unit_shapes::*};
+use qdist::nalgebra::SMatrix;
+use {
+    answers::*, asked::*, bodies::*, combine::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, unit_shapes::*,
+};

@@ -9,7 +9,6 @@
 //! way: write { c, -s, s, c } for the cosine and sine that you have.
 
 use super::*;
-use qdist::nalgebra::Matrix2;
 use qdist::support::{BoxShape, Capsule, Ellipsoid, HalfSpace, ShapeError, Sphere};
 
 /// A set in the plane with a pose: x -> rotation * x + translation.
@@ -86,40 +85,7 @@ shape!(qdist_box2_f64, 2, BoxShape<f64, 2>, |s| Vector::from(s.half));
 shape!(qdist_ellipse_f64, 2, Ellipsoid<f64, 2>, |s| Vector::from(s.semi_axes));
 shape!(qdist_capsule2_f64, 2, Capsule<f64, 2>, |s| s.radius, s.half_height);
 
-impl Placed<2> for qdist_body2_f64 {
-    fn new(set: qdist_set_f64, stated: Stated<2>) -> Self {
-        Self {
-            set,
-            rotation: [1.0, 0.0, 0.0, 1.0],
-            translation: [0.0; 2],
-            center: stated.center,
-            rolling_radius: stated.rolling_radius,
-            spread: stated.spread,
-            extents: stated.extents,
-            errors: stated.errors,
-            unbounded: stated.unbounded,
-            precise: stated.precise,
-        }
-    }
-    #[inline(always)]
-    fn set(&self) -> &qdist_set_f64 {
-        &self.set
-    }
-    #[inline(always)]
-    fn stated(&self) -> Stated<2> {
-        let &Self { center, spread, rolling_radius, extents, errors, precise, unbounded, .. } = self;
-        let (symmetry, turning) = (QDIST_SYMMETRY_NONE, None);
-        Stated { center, spread, rolling_radius, extents, errors, symmetry, turning, precise, unbounded }
-    }
-    #[inline(always)]
-    fn rotation(&self) -> Matrix2<f64> {
-        Matrix2::from_row_slice(&self.rotation)
-    }
-    #[inline(always)]
-    fn translation(&self) -> Vector<f64, 2> {
-        Vector::from(self.translation)
-    }
-}
+placed!(qdist_body2_f64, 2, [1.0, 0.0, 0.0, 1.0]);
 
 impl Joined<2> for qdist_join2_f64 {
     type Body = qdist_body2_f64;

@@ -97,7 +97,7 @@ pub extern "C" fn qdist_hull_prepare_f64(
     graph_capacity: u32,
 ) -> qdist_status {
     let list = qdist_points_f64 { points, count, dimension: 3 };
-    let prepare = || {
+    status_of(|| {
         hull.checked()?;
         graph.checked()?;
         let (coordinates, mut solver) = (list.coordinates()?, handle::open::<f64, 3>(&solver)?);
@@ -110,8 +110,7 @@ pub extern "C" fn qdist_hull_prepare_f64(
             .asked(|interrupt| solver.prepare_hull(as_points(coordinates), words, interrupt).map(|_| ()))
             .map_err(from_graph)?;
         hull.put(qdist_hull_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
-    };
-    status(prepare())
+    })
 }
 
 /// Computes the graph of a hull of any number of points, at most QDIST_HULL_LARGE_POINTS. QDIST_HULL_LARGE_GRAPH_LEN(count) words of
@@ -133,7 +132,7 @@ pub extern "C" fn qdist_hull_large_prepare_f64(
     graph_capacity: u32,
 ) -> qdist_status {
     let list = qdist_points_f64 { points, count, dimension: 3 };
-    let prepare = || {
+    status_of(|| {
         hull.checked()?;
         graph.checked()?;
         workspace.checked()?;
@@ -153,8 +152,7 @@ pub extern "C" fn qdist_hull_large_prepare_f64(
             .asked(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
             .map_err(from_graph)?;
         hull.put(qdist_hull_large_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
-    };
-    status(prepare())
+    })
 }
 
 /// Makes a body of a prepared hull. Reads all points.
@@ -201,9 +199,6 @@ struct Anywhere;
 
 impl AnswersAny for Anywhere {
     type Struct = qdist_points_f64;
-    fn dimension(points: &qdist_points_f64) -> Check<usize> {
-        dimension(points.dimension)
-    }
     fn farthest(points: &qdist_points_f64, u: &[f64], _exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
         let (_, best) = farthest(points.coordinates()?, u.len(), in_range(u, &mut [0.0; MAX_DIMENSION]))
             .ok_or(QDIST_ERROR_ARGUMENT)?;
@@ -224,7 +219,7 @@ fn fill_set(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> Check {
         extent,
         error: f64::count(2 * n + 2) * f64::ROUNDOFF * extent,
         dimension: points.dimension,
-        ..qdist_set_f64::NONE
+        ..qdist_set_f64::ZERO
     })
 }
 
@@ -245,26 +240,21 @@ impl<const FAR: bool, const N: usize> Answers<N> for Scan<FAR> {
 /// Fills a body with a list of points.
 pub(super) fn fill_points<B: Placed<N>, const N: usize>(body: Out<B>, shape: In<qdist_points_f64>) -> Check {
     body.checked()?;
-    let none = qdist_set_f64 { user: shape.user(), ..qdist_set_f64::NONE };
-    let near = qdist_set_f64 { support: support_of::<Scan<false>, N>(), ..none };
-    let far = qdist_set_f64 { support: support_of::<Scan<true>, N>(), ..none };
-    body.put(of_points(shape.get()?, near, far)?)
+    let [near, far] = [support_of::<Scan<false>, N>(), support_of::<Scan<true>, N>()];
+    body.put(of_points(shape.get()?, shape.user(), [(near, None), (far, None)])?)
 }
 
-/// A body of points, with the functions of the first set for points around the origin, of the second for points far from it.
+/// A body of points, with the first functions, `support` and `exhaustive`, for points around the origin, the second for points far from it.
 fn of_points<B: Placed<N>, const N: usize>(
     points: &qdist_points_f64,
-    near: qdist_set_f64,
-    far: qdist_set_f64,
+    user: *mut c_void,
+    [near, far]: [(qdist_support_f64, qdist_support_f64); 2],
 ) -> Check<B> {
     let all = Points::new(points.points::<N>()?).map_err(from_shape)?;
     let stated = Stated { precise: precise_of::<Scan<false>, N>(), ..Stated::of(&all) };
-    let set = qdist_set_f64 {
-        extent: all.extent().at_least(tiny()),
-        error: all.error().at_least(tiny()),
-        dimension: N as u32,
-        ..if stated.spread > 0.0 { far } else { near }
-    };
+    let (support, exhaustive) = if stated.spread > 0.0 { far } else { near };
+    let (extent, error) = (all.extent().at_least(tiny()), all.error().at_least(tiny()));
+    let set = qdist_set_f64 { support, exhaustive, user, extent, error, dimension: N as u32, ..qdist_set_f64::ZERO };
     Ok(B::new(set, stated))
 }
 
@@ -277,29 +267,26 @@ trait Hull: 'static {
     fn open(&self) -> Check<HullGraph<'_, Self::Word>>;
 }
 
-impl Hull for qdist_hull_f64 {
-    type Word = u16;
-    #[inline(always)]
-    fn points(&self) -> &qdist_points_f64 {
-        &self.points
-    }
-    #[inline(always)]
-    fn open(&self) -> Check<HullGraph<'_>> {
-        HullGraph::from_words(self.graph.array(Some(self.graph_len as usize))?).ok_or(QDIST_ERROR_ARGUMENT)
-    }
+macro_rules! hull {
+    ($struct:ty, $word:ty) => {
+        impl Hull for $struct {
+            type Word = $word;
+            #[inline(always)]
+            fn points(&self) -> &qdist_points_f64 {
+                // The first member, so that a function of points serves for a hull.
+                const { assert!(core::mem::offset_of!($struct, points) == 0) };
+                &self.points
+            }
+            #[inline(always)]
+            fn open(&self) -> Check<HullGraph<'_, $word>> {
+                HullGraph::from_words(self.graph.array(Some(self.graph_len as usize))?).ok_or(QDIST_ERROR_ARGUMENT)
+            }
+        }
+    };
 }
 
-impl Hull for qdist_hull_large_f64 {
-    type Word = u32;
-    #[inline(always)]
-    fn points(&self) -> &qdist_points_f64 {
-        &self.points
-    }
-    #[inline(always)]
-    fn open(&self) -> Check<HullGraph<'_, u32>> {
-        HullGraph::from_words(self.graph.array(Some(self.graph_len as usize))?).ok_or(QDIST_ERROR_ARGUMENT)
-    }
-}
+hull!(qdist_hull_f64, u16);
+hull!(qdist_hull_large_f64, u32);
 
 /// By climbing from vertex to vertex.
 struct Climb<H, const FAR: bool>(PhantomData<H>);
@@ -317,23 +304,7 @@ fn fill_hull<H: Hull>(body: Out<qdist_body_f64>, shape: In<H>) -> Check {
     let hull = shape.get()?;
     hull.open()?;
     body.checked()?;
-    let none = qdist_set_f64 { user: shape.user(), ..qdist_set_f64::NONE };
-    // The points are the first member of the hull, so that a function of points serves for a hull.
-    const {
-        assert!(
-            core::mem::offset_of!(qdist_hull_f64, points) == 0
-                && core::mem::offset_of!(qdist_hull_large_f64, points) == 0
-        )
-    };
-    let near = qdist_set_f64 {
-        support: support_of::<Climb<H, false>, 3>(),
-        exhaustive: exhaustive_of::<Scan<false>, 3>(),
-        ..none
-    };
-    let far = qdist_set_f64 {
-        support: support_of::<Climb<H, true>, 3>(),
-        exhaustive: exhaustive_of::<Scan<true>, 3>(),
-        ..none
-    };
-    body.put(of_points(hull.points(), near, far)?)
+    let near = (support_of::<Climb<H, false>, 3>(), exhaustive_of::<Scan<false>, 3>());
+    let far = (support_of::<Climb<H, true>, 3>(), exhaustive_of::<Scan<true>, 3>());
+    body.put(of_points(hull.points(), shape.user(), [near, far])?)
 }

@@ -147,18 +147,7 @@ versioned!(qdist_result_f64);
 
 impl Defaults for qdist_options_f64 {
     fn defaults() -> Self {
-        Self {
-            struct_size: size_of::<Self>() as u32,
-            max_iterations: 0,
-            interrupt: None,
-            interrupt_user: core::ptr::null_mut(),
-            absolute: 0.0,
-            relative: f64::RELATIVE_TOLERANCE,
-            threshold: 0.0,
-            use_threshold: 0,
-            use_guess: 0,
-            guess: [0.0; MAX_DIMENSION],
-        }
+        Self { struct_size: size_of::<Self>() as u32, relative: f64::RELATIVE_TOLERANCE, ..Self::ZERO }
     }
 }
 

@@ -94,19 +94,6 @@ pub struct qdist_body_f64 {
 gaps!(qdist_body_f64, set.contains_origin..rotation, symmetry..unbounded, precise..);
 
 impl qdist_set_f64 {
-    /// What says nothing.
-    pub(super) const NONE: Self = Self {
-        support: None,
-        exhaustive: None,
-        mirrored: None,
-        user: core::ptr::null_mut(),
-        radius: 0.0,
-        extent: 0.0,
-        error: 0.0,
-        dimension: 0,
-        contains_origin: 0,
-    };
-
     /// What a set of the library states of itself; 0 would be "not known", so what is 0 is next to nothing.
     pub(super) fn stated_by<const N: usize>(set: &impl Support<f64, N>) -> Self {
         Self {
@@ -115,7 +102,7 @@ impl qdist_set_f64 {
             error: set.error().at_least(tiny()),
             dimension: N as u32,
             contains_origin: set.contains_origin().into(),
-            ..Self::NONE
+            ..Self::ZERO
         }
     }
 

@@ -12,7 +12,6 @@
 //! in qdist_solve3, take body.set.
 
 use super::*;
-use qdist::nalgebra::Matrix3;
 use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, Sphere};
 
 /// All points within `radius` of the origin.
@@ -129,42 +128,7 @@ pub(super) fn fill<S: Shape<N>, B: Placed<N>, const N: usize>(body: Out<B>, shap
     body.put(B::new(made, Stated { precise, ..Stated::of(&set) }))
 }
 
-impl Placed<3> for qdist_body_f64 {
-    fn new(set: qdist_set_f64, stated: Stated<3>) -> Self {
-        Self {
-            set,
-            rotation: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            translation: [0.0; 3],
-            center: stated.center,
-            rolling_radius: stated.rolling_radius,
-            spread: stated.spread,
-            extents: stated.extents,
-            errors: stated.errors,
-            symmetry: stated.symmetry,
-            unbounded: stated.unbounded,
-            turning: stated.turning,
-            precise: stated.precise,
-        }
-    }
-    #[inline(always)]
-    fn set(&self) -> &qdist_set_f64 {
-        &self.set
-    }
-    #[inline(always)]
-    fn stated(&self) -> Stated<3> {
-        let &Self { center, spread, rolling_radius, extents, errors, symmetry, turning, precise, unbounded, .. } = self;
-        Stated { center, spread, rolling_radius, extents, errors, symmetry, turning, precise, unbounded }
-    }
-    #[inline(always)]
-    fn rotation(&self) -> Matrix3<f64> {
-        let [a, b, c, d, e, f, g, h, i] = self.rotation;
-        Matrix3::new(a, b, c, d, e, f, g, h, i)
-    }
-    #[inline(always)]
-    fn translation(&self) -> Vector<f64, 3> {
-        Vector::from(self.translation)
-    }
-}
+placed!(qdist_body_f64, 3, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], symmetry, turning);
 
 /// Makes a body of a sphere, in the identity pose, like all that follow.
 ///

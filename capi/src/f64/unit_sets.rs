@@ -99,7 +99,7 @@ gaps!(qdist_segment_unit_f64, dimension..);
 /// Status: ARGUMENT (radius is not above 0), NONFINITE (radius).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_ball_f64(unit: Out<qdist_unit_f64>, radius: f64) -> qdist_status {
-    let ball = qdist_unit_f64 { extent: radius, ball_radius: radius, inner_radius: radius, ..UNKNOWN };
+    let ball = qdist_unit_f64 { extent: radius, ball_radius: radius, inner_radius: radius, ..qdist_unit_f64::ZERO };
     status(semi_axes(&[radius]).and_then(|()| unit.put(ball)))
 }
 
@@ -146,20 +146,6 @@ pub extern "C" fn qdist_unit_segment_f64(unit: Out<qdist_unit_f64>, shape: In<qd
 pub extern "C" fn qdist_unit_vertices_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_points_f64>) -> qdist_status {
     status(fill_vertices(unit, shape))
 }
-
-/// What says nothing.
-pub(super) const UNKNOWN: qdist_unit_f64 = qdist_unit_f64 {
-    value: None,
-    point: None,
-    vertex: None,
-    mirrored: None,
-    user: core::ptr::null_mut(),
-    extent: 0.0,
-    ball_radius: 0.0,
-    inner_radius: 0.0,
-    vertex_count: 0,
-    dimension: 0,
-};
 
 /// A unit set of the caller that has passed the checks.
 pub(super) enum CheckedUnit {

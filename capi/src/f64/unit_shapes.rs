@@ -2,6 +2,24 @@
 
 use super::*;
 
+/// Structs of one number for each dimension: those that count.
+macro_rules! numbers {
+    ($($struct:ty, $field:ident;)*) => {
+        $(impl $struct {
+            fn $field(&self) -> Check<&[f64]> {
+                first(&self.$field, dimension(self.dimension)?)
+            }
+        })*
+    };
+}
+
+numbers! {
+    qdist_ellipsoid_unit_f64, semi_axes;
+    qdist_box_unit_f64, half;
+    qdist_cross_unit_f64, semi_axes;
+    qdist_segment_unit_f64, end;
+}
+
 /// Those that are above 0, with their places.
 fn positive(list: &[f64]) -> impl Iterator<Item = (usize, &f64)> {
     list.iter().enumerate().filter(|&(_, &x)| x > 0.0)
@@ -15,10 +33,6 @@ fn least(list: &[f64]) -> f64 {
 // ------------------------------------------------------------------------------------------------- ellipsoid
 
 impl qdist_ellipsoid_unit_f64 {
-    fn semi_axes(&self) -> Check<&[f64]> {
-        first(&self.semi_axes, dimension(self.dimension)?)
-    }
-
     fn rotation(&self) -> Check<Option<&[f64]>> {
         let n = dimension(self.dimension)?;
         if self.rotation.is_null() { Ok(None) } else { self.rotation.array(Some(n * n)).map(Some) }
@@ -35,9 +49,6 @@ fn along(rotation: Option<&[f64]>, i: usize, u: &[f64]) -> f64 {
 }
 
 impl AnswersUnit for qdist_ellipsoid_unit_f64 {
-    fn dimension(&self) -> Check<usize> {
-        dimension(self.dimension)
-    }
     /// |D R^T u|, with the axes divided by the largest, so that squares stay in range.
     fn value(&self, u: &[f64]) -> Check<f64> {
         let (axes, rotation) = (self.semi_axes()?, self.rotation()?);
@@ -90,7 +101,7 @@ pub(super) fn fill_ellipsoid(unit: Out<qdist_unit_f64>, shape: In<qdist_ellipsoi
         None => least,
     };
     let extent = length(largest(axes) * 1.001)?;
-    let stated = qdist_unit_f64 { extent, inner_radius, dimension: ellipsoid.dimension, ..UNKNOWN };
+    let stated = qdist_unit_f64 { extent, inner_radius, dimension: ellipsoid.dimension, ..qdist_unit_f64::ZERO };
     AnswersUnit::fill(&unit, shape, stated, true)
 }
 
@@ -112,16 +123,7 @@ fn orthonormal(matrix: &[f64], n: usize) -> Check {
 
 // ------------------------------------------------------------------------------------------------- box
 
-impl qdist_box_unit_f64 {
-    fn half(&self) -> Check<&[f64]> {
-        first(&self.half, dimension(self.dimension)?)
-    }
-}
-
 impl AnswersUnit for qdist_box_unit_f64 {
-    fn dimension(&self) -> Check<usize> {
-        dimension(self.dimension)
-    }
     fn value(&self, u: &[f64]) -> Check<f64> {
         Ok(self.half()?.iter().zip(u).fold(0.0, |s, (&h, &x)| s + h * x.abs()))
     }
@@ -149,23 +151,14 @@ pub(super) fn fill_box(unit: Out<qdist_unit_f64>, shape: In<qdist_box_unit_f64>)
         inner_radius: least(half),
         vertex_count: 1 << (positive(half).count() as u32),
         dimension: cuboid.dimension,
-        ..UNKNOWN
+        ..qdist_unit_f64::ZERO
     };
     AnswersUnit::fill(&unit, shape, stated, false)
 }
 
 // ------------------------------------------------------------------------------------------------- cross-polytope
 
-impl qdist_cross_unit_f64 {
-    fn semi_axes(&self) -> Check<&[f64]> {
-        first(&self.semi_axes, dimension(self.dimension)?)
-    }
-}
-
 impl AnswersUnit for qdist_cross_unit_f64 {
-    fn dimension(&self) -> Check<usize> {
-        dimension(self.dimension)
-    }
     fn value(&self, u: &[f64]) -> Check<f64> {
         Ok(self.semi_axes()?.iter().zip(u).fold(0.0, |m: f64, (&s, &x)| m.at_least(s * x.abs())))
     }
@@ -204,23 +197,14 @@ pub(super) fn fill_cross(unit: Out<qdist_unit_f64>, shape: In<qdist_cross_unit_f
         inner_radius: if least > 0.0 { least / sum.root() * (1.0 - slack) } else { 0.0 },
         vertex_count: 2 * positive(axes).count() as u32,
         dimension: cross.dimension,
-        ..UNKNOWN
+        ..qdist_unit_f64::ZERO
     };
     AnswersUnit::fill(&unit, shape, stated, false)
 }
 
 // ------------------------------------------------------------------------------------------------- segment
 
-impl qdist_segment_unit_f64 {
-    fn end(&self) -> Check<&[f64]> {
-        first(&self.end, dimension(self.dimension)?)
-    }
-}
-
 impl AnswersUnit for qdist_segment_unit_f64 {
-    fn dimension(&self) -> Check<usize> {
-        dimension(self.dimension)
-    }
     fn value(&self, u: &[f64]) -> Check<f64> {
         Ok(dot(self.end()?, u).at_least(0.0))
     }
@@ -240,7 +224,7 @@ pub(super) fn fill_segment(unit: Out<qdist_unit_f64>, shape: In<qdist_segment_un
     AnswersUnit::fill(
         &unit,
         shape,
-        qdist_unit_f64 { extent, vertex_count: 1, dimension: segment.dimension, ..UNKNOWN },
+        qdist_unit_f64 { extent, vertex_count: 1, dimension: segment.dimension, ..qdist_unit_f64::ZERO },
         false,
     )
 }
@@ -248,9 +232,6 @@ pub(super) fn fill_segment(unit: Out<qdist_unit_f64>, shape: In<qdist_segment_un
 // ------------------------------------------------------------------------------------------------- vertices
 
 impl AnswersUnit for qdist_points_f64 {
-    fn dimension(&self) -> Check<usize> {
-        dimension(self.dimension)
-    }
     fn value(&self, u: &[f64]) -> Check<f64> {
         Ok(dot(best(self, u)?, u).at_least(0.0))
     }
@@ -273,7 +254,8 @@ pub(super) fn fill_vertices(unit: Out<qdist_unit_f64>, shape: In<qdist_points_f6
     let points = shape.get()?;
     let n = dimension(points.dimension)?;
     let extent = some_reach(points.coordinates()?, n)?;
-    let stated = qdist_unit_f64 { extent, vertex_count: points.count, dimension: points.dimension, ..UNKNOWN };
+    let stated =
+        qdist_unit_f64 { extent, vertex_count: points.count, dimension: points.dimension, ..qdist_unit_f64::ZERO };
     AnswersUnit::fill(&unit, shape, stated, false)
 }
 

@@ -58,7 +58,7 @@ pub extern "C" fn qdist_tracker_lower_after_f64(
     moved: f64,
     lower: Out<f64>,
 ) -> qdist_status {
-    let ask = || {
+    status_of(|| {
         lower.checked()?;
         finite(&[moved])?;
         let tracker = tracker.get()?;
@@ -70,8 +70,7 @@ pub extern "C" fn qdist_tracker_lower_after_f64(
             6 => tracker.lower_after::<6>(q, moved),
             _ => Err(QDIST_ERROR_DIMENSION),
         }?)
-    };
-    status(ask())
+    })
 }
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, for the next tick of a loop, and

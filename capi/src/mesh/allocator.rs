@@ -28,7 +28,7 @@ pub struct qdist_allocator {
 /// Status: NULL (also: alloc or free), ALLOCATOR (it is too late).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_set_allocator(allocator: In<qdist_allocator>) -> qdist_status {
-    let set = || -> Check {
+    status_of(|| {
         let functions = allocator.get()?;
         if functions.alloc.is_none() || functions.free.is_none() {
             return Err(QDIST_ERROR_NULL);
@@ -37,8 +37,7 @@ pub extern "C" fn qdist_mesh_set_allocator(allocator: In<qdist_allocator>) -> qd
             .compare_exchange(null_mut(), allocator.address().cast_mut(), Ordering::AcqRel, Ordering::Acquire)
             .map_err(|_| QDIST_ERROR_ALLOCATOR)?;
         Ok(())
-    };
-    status(set())
+    })
 }
 
 /// NULL before the first allocation, then the caller's struct or [`SYSTEM`], forever.

@@ -5,10 +5,8 @@
 //! distance `upper`. Lower bounds above 0 need both meshes from qdist_mesh_certify.
 
 use super::*;
-use core::ptr::null_mut;
 use qdist::mesh::certificate::Effort;
-use qdist::mesh::{DepthOptions, MeshDepth, Outcome, Progress};
-use qdist::nalgebra::Isometry3;
+use qdist::mesh::{DepthOptions, Progress};
 
 /// How much is done for a depth?
 pub type qdist_mesh_effort = u32;
@@ -41,17 +39,19 @@ pub const QDIST_MESH_INVALID: qdist_mesh_outcome = 6;
 /// The name of an outcome, e.g. "separated". A static string, never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_outcome_string(outcome: qdist_mesh_outcome) -> *const c_char {
-    match outcome {
-        QDIST_MESH_CONVERGED => c"converged",
-        QDIST_MESH_BOUNDED => c"bounded",
-        QDIST_MESH_SEPARATED => c"separated",
-        QDIST_MESH_INTERRUPTED => c"interrupted",
-        QDIST_MESH_BUDGET => c"budget",
-        QDIST_MESH_STUCK => c"stuck",
-        QDIST_MESH_INVALID => c"invalid",
-        _ => c"unknown outcome",
-    }
-    .as_ptr()
+    outcome_name(outcome)
+}
+
+// (What is not known one day: the bracket would be true.)
+outcomes! {
+    outcome(Outcome) -> qdist_mesh_outcome, or QDIST_MESH_BOUNDED; outcome_name, or c"unknown outcome";
+    Converged = QDIST_MESH_CONVERGED, c"converged";
+    Bounded = QDIST_MESH_BOUNDED, c"bounded";
+    Separated = QDIST_MESH_SEPARATED, c"separated";
+    Interrupted = QDIST_MESH_INTERRUPTED, c"interrupted";
+    Budget = QDIST_MESH_BUDGET, c"budget";
+    Stuck = QDIST_MESH_STUCK, c"stuck";
+    Invalid = QDIST_MESH_INVALID, c"invalid";
 }
 
 pub(super) fn effort(effort: qdist_mesh_effort) -> Check<Effort> {
@@ -60,20 +60,6 @@ pub(super) fn effort(effort: qdist_mesh_effort) -> Check<Effort> {
         QDIST_MESH_DEFAULT => Ok(Effort::Default),
         QDIST_MESH_HEAVY => Ok(Effort::Heavy),
         _ => Err(QDIST_ERROR_ARGUMENT),
-    }
-}
-
-fn outcome(outcome: Outcome) -> qdist_mesh_outcome {
-    match outcome {
-        Outcome::Converged => QDIST_MESH_CONVERGED,
-        Outcome::Bounded => QDIST_MESH_BOUNDED,
-        Outcome::Separated => QDIST_MESH_SEPARATED,
-        Outcome::Interrupted => QDIST_MESH_INTERRUPTED,
-        Outcome::Budget => QDIST_MESH_BUDGET,
-        Outcome::Stuck => QDIST_MESH_STUCK,
-        Outcome::Invalid => QDIST_MESH_INVALID,
-        // (There are no others. The bracket would be true.)
-        _ => QDIST_MESH_BOUNDED,
     }
 }
 
@@ -142,15 +128,10 @@ impl Defaults for qdist_mesh_options {
             struct_size: size_of::<qdist_mesh_options>() as u32,
             metric: QDIST_MESH_DISP,
             effort: QDIST_MESH_DEFAULT,
-            pose_count: 0,
             seed: usual.seed,
             max_queries: usual.max_queries,
             relative: usual.relative,
-            poses: In::NULL,
-            mass: In::NULL,
-            own: In::NULL,
-            watch: None,
-            watch_user: null_mut(),
+            ..Self::ZERO
         }
     }
 }
@@ -188,22 +169,13 @@ versioned!(qdist_mesh_depth);
 
 impl qdist_mesh_depth {
     pub(super) fn new(found: &MeshDepth) -> Self {
-        const NOWHERE: qdist_mesh_distance = qdist_mesh_distance {
-            distance: 0.0,
-            on_a: [0.0; 3],
-            on_b: [0.0; 3],
-            feature_a: 0,
-            index_a: 0,
-            feature_b: 0,
-            index_b: 0,
-        };
         qdist_mesh_depth {
             struct_size: size_of::<qdist_mesh_depth>() as u32,
             outcome: outcome(found.outcome),
             lower: found.lower,
             upper: found.upper.min(f64::MAX),
             pose: qdist_mesh_pose::new(&found.pose),
-            distance: found.distance.as_ref().map_or(NOWHERE, qdist_mesh_distance::new),
+            distance: found.distance.as_ref().map_or(qdist_mesh_distance::ZERO, qdist_mesh_distance::new),
             solid: found.solid.into(),
             walks: found.walks,
             collision_queries: found.counters.collision,
@@ -237,13 +209,13 @@ pub extern "C" fn qdist_mesh_pair_depth(
 ) -> qdist_status {
     guard(|| {
         depth.known()?;
-        let (mut pair, pose, query) = (exclusive(&pair)?, pose.get()?.checked()?, Query::new(options)?);
+        let (mut pair, pose, query) = (pair.get()?.0.take()?, pose.get()?.checked()?, Query::new(options)?);
         let model = pair.a.clone();
         let metric = query.metric.of(&model)?;
-        let found = pair.ask(|solver| {
+        let found = pair.ask(|searches| {
             let mut watch = |progress: &Progress| query.is_stopped(progress);
-            let watch = query.watch.is_some().then_some(&mut watch as &mut dyn FnMut(&Progress) -> bool);
-            solver.depth(&pose, metric, &query.options(), watch)
+            let watch = query.given.watch.is_some().then_some(&mut watch as &mut dyn FnMut(&Progress) -> bool);
+            searches.solver.depth(&pose, metric, &query.options(), watch)
         })?;
         depth.put_version(qdist_mesh_depth::new(&found))
     })
@@ -251,53 +223,32 @@ pub extern "C" fn qdist_mesh_pair_depth(
 
 /// The caller's options, checked.
 struct Query {
+    given: qdist_mesh_options,
     metric: Chosen,
     effort: Effort,
-    seed: u64,
-    max_queries: u64,
-    relative: f64,
     poses: Vec<Isometry3<f64>>,
-    watch: qdist_mesh_watch,
-    user: *mut c_void,
 }
 
 impl Query {
     fn new(options: In<qdist_mesh_options>) -> Check<Query> {
-        let options = if options.is_null() { qdist_mesh_options::defaults() } else { options.version()? };
-        let effort = effort(options.effort)?;
-        finite(&[options.relative])?;
-        if options.relative < 0.0 {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let metric = Chosen::new(options.metric, options.mass, options.own)?;
-        let poses = match options.pose_count {
+        let given = options.or_default()?;
+        let effort = effort(given.effort)?;
+        not_negative(given.relative)?;
+        let metric = Chosen::new(given.metric, given.mass, given.own)?;
+        let poses = match given.pose_count {
             0 => Vec::new(),
             count => {
-                let list = options.poses.array(Some(count as usize))?;
+                let list = given.poses.array(Some(count as usize))?;
                 list.iter().map(qdist_mesh_pose::checked).collect::<Check<_>>()?
             }
         };
-        Ok(Query {
-            metric,
-            effort,
-            seed: options.seed,
-            max_queries: options.max_queries,
-            relative: options.relative,
-            poses,
-            watch: options.watch,
-            user: options.watch_user,
-        })
+        Ok(Query { given, metric, effort, poses })
     }
 
     fn options(&self) -> DepthOptions<'_> {
-        DepthOptions {
-            effort: self.effort,
-            seed: self.seed,
-            relative: self.relative,
-            max_queries: self.max_queries,
-            poses: &self.poses,
-            ..DepthOptions::default()
-        }
+        let qdist_mesh_options { seed, max_queries, relative, .. } = self.given;
+        let (effort, poses) = (self.effort, &self.poses[..]);
+        DepthOptions { effort, seed, relative, max_queries, poses, ..DepthOptions::default() }
     }
 
     /// Asks the caller's function.
@@ -310,6 +261,6 @@ impl Query {
             queries: progress.queries,
         };
         // SAFETY: the header: `watch` may be called with `watch_user` during the call.
-        self.watch.is_some_and(|watch| unsafe { watch(self.user, &told) } != 0)
+        self.given.watch.is_some_and(|watch| unsafe { watch(self.given.watch_user, &told) } != 0)
     }
 }

@@ -6,8 +6,7 @@ use super::*;
 use qdist::mesh::mass::MassProperties;
 use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Sigma};
 use qdist::mesh::optimize::Quadratic;
-use qdist::mesh::{MAX_COORDINATE, Model};
-use qdist::nalgebra::{Isometry3, Matrix3, Matrix6, Point3, Vector6};
+use qdist::nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// Which metric?
 pub type qdist_mesh_metric = u32;

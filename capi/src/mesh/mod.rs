@@ -7,11 +7,12 @@
 //! * [`tracker`]: the same in a control loop, tick by tick.
 //! * `allocator` (feature `c-allocator`): where the C library's memory comes from.
 //!
-//! Handles are boxes. Pairs and trackers share their meshes by reference counting, so that they may be freed in any order. Every call runs in
-//! [`guard`]: a panic, which would be a defect, becomes a status.
+//! Handles are boxes. Pairs and trackers share their meshes by reference counting (`between`), so that they may be freed in any order. Every call
+//! runs in [`guard`]: a panic, which would be a defect, becomes a status.
 
 #[cfg(feature = "c-allocator")]
 pub mod allocator;
+mod between;
 pub mod depth;
 mod guard;
 pub mod metric;
@@ -20,4 +21,6 @@ pub mod pair;
 pub mod tracker;
 
 use crate::vocabulary::*;
-use {depth::*, guard::*, metric::*, model::*, pair::*};
+use qdist::mesh::{MAX_COORDINATE, MeshDepth, Model, Outcome};
+use qdist::nalgebra::{Isometry3, Point3};
+use {between::*, depth::*, guard::*, metric::*, model::*, pair::*, tracker::*};

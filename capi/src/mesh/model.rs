@@ -8,7 +8,7 @@
 use super::*;
 use qdist::mesh::certificate::BuildOptions;
 use qdist::mesh::mass::MassProperties;
-use qdist::mesh::{MeshError, Model, ModelError};
+use qdist::mesh::{MeshError, ModelError};
 use std::sync::Arc;
 
 /// A mesh: opaque.

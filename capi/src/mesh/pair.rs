@@ -4,51 +4,22 @@
 //! shared.
 
 use super::*;
-use qdist::mesh::{Contact, DepthSolver, Distance, Feature, MAX_COORDINATE, Model};
-use qdist::nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
-use std::sync::Arc;
+use qdist::mesh::{Contact, DepthSolver, Distance, Feature};
+use qdist::nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
 /// A pair: opaque.
-pub struct qdist_mesh_pair(Exclusive<Pair>);
+pub struct qdist_mesh_pair(pub(super) Exclusive<Between<Searches>>);
 
-/// What is in it.
-pub(super) struct Pair {
-    /// Before what it borrows from, so that it is dropped first.
-    solver: DepthSolver<'static>,
+/// What borrows from the two meshes, and contacts in the order of the last call.
+pub(super) struct Searches {
+    pub(super) solver: DepthSolver<'static>,
     contacts: Vec<Contact>,
-    pub(super) a: Arc<Model>,
-    b: Arc<Model>,
 }
 
-/// Threads may pass pairs on and share meshes, as the header says.
-const _: () = {
-    const fn passed<T: Send>() {}
-    const fn shared<T: Send + Sync>() {}
-    passed::<qdist_mesh_pair>();
-    shared::<qdist_mesh>();
-};
-
-impl Pair {
-    fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
-        // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the solver,
-        // which nothing takes out of this struct.
-        let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
-        Pair { solver: DepthSolver::new(one, two), contacts: Vec::new(), a, b }
+impl Searches {
+    fn new(a: &'static Model, b: &'static Model) -> Self {
+        Self { solver: DepthSolver::new(a, b), contacts: Vec::new() }
     }
-
-    /// Asks the solver. A panic leaves the pair as new.
-    pub(super) fn ask<R>(&mut self, question: impl FnOnce(&mut DepthSolver<'static>) -> R) -> Check<R> {
-        let answer = caught(|| question(&mut self.solver));
-        answer.ok_or_else(|| {
-            *self = Pair::new(self.a.clone(), self.b.clone());
-            QDIST_ERROR_INTERNAL
-        })
-    }
-}
-
-/// A pair of the caller, for one call.
-pub(super) fn exclusive(pair: &Out<qdist_mesh_pair>) -> Check<Taken<'_, Pair>> {
-    pair.get()?.0.take()
 }
 
 /// Where A is, in the frame of B: x_B = R x_A + t.
@@ -173,15 +144,14 @@ pub extern "C" fn qdist_mesh_pair_create(
 ) -> qdist_status {
     guard(|| {
         pair.checked()?;
-        let (a, b) = (a.get()?.model.clone(), b.get()?.model.clone());
-        pair.put(Box::into_raw(Box::new(qdist_mesh_pair(Exclusive::new(Pair::new(a, b))))))
+        pair.put(Box::into_raw(Box::new(qdist_mesh_pair(Between::of(a, b, Searches::new)?))))
     })
 }
 
 /// Frees a pair; NULL is nothing, and so is the pair that is calling the caller.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_pair_free(pair: Out<qdist_mesh_pair>) {
-    if exclusive(&pair).is_ok() {
+    if pair.get().is_ok_and(|pair| pair.0.take().is_ok()) {
         // SAFETY: the header: from qdist_mesh_pair_create, once.
         drop(unsafe { pair.boxed() });
     }
@@ -199,8 +169,8 @@ pub extern "C" fn qdist_mesh_pair_collides(
 ) -> qdist_status {
     guard(|| {
         collides.checked()?;
-        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
-        let found = pair.ask(|solver| solver.pair().collides(&pose))?;
+        let (mut pair, pose) = (pair.get()?.0.take()?, pose.get()?.checked()?);
+        let found = pair.ask(|searches| searches.solver.pair().collides(&pose))?;
         collides.put(found.into())
     })
 }
@@ -217,8 +187,8 @@ pub extern "C" fn qdist_mesh_pair_distance(
 ) -> qdist_status {
     guard(|| {
         distance.checked()?;
-        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
-        let found = pair.ask(|solver| solver.pair().distance(&pose))?;
+        let (mut pair, pose) = (pair.get()?.0.take()?, pose.get()?.checked()?);
+        let found = pair.ask(|searches| searches.solver.pair().distance(&pose))?;
         distance.put(qdist_mesh_distance::new(&found))
     })
 }
@@ -245,20 +215,13 @@ pub extern "C" fn qdist_mesh_pair_contacts(
         if capacity > 0 {
             contacts.checked()?;
         }
-        let (mut pair, pose) = (exclusive(&pair)?, pose.get()?.checked()?);
-        if !margin.is_finite() {
-            return Err(QDIST_ERROR_NONFINITE);
-        }
-        if margin < 0.0 {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let mut found = core::mem::take(&mut pair.contacts);
-        pair.ask(|solver| solver.pair().contacts(&pose, margin, &mut found))?;
+        let (mut pair, pose) = (pair.get()?.0.take()?, pose.get()?.checked()?);
+        not_negative(margin)?;
+        pair.ask(|searches| searches.solver.pair().contacts(&pose, margin, &mut searches.contacts))?;
+        let found = &pair.inside.contacts;
         for (place, contact) in found.iter().take(capacity as usize).enumerate() {
             contacts.put_at(place, qdist_mesh_contact::new(contact))?;
         }
-        count.put(found.len() as u32)?;
-        pair.contacts = found;
-        Ok(())
+        count.put(found.len() as u32)
     })
 }

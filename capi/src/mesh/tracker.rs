@@ -18,49 +18,10 @@
 //! qdist_mesh_pair_contacts of another pair of the same meshes.
 
 use super::*;
-use core::ptr::null_mut;
-use qdist::mesh::{Budget, Counters, DepthTracker, MeshDepth, Model, Outcome};
-use std::sync::Arc;
+use qdist::mesh::{Budget, Counters, DepthTracker};
 
 /// A tracker: opaque.
-pub struct qdist_mesh_tracker(Exclusive<Tracker>);
-
-/// What is in it.
-struct Tracker {
-    /// Before what it borrows from, so that it is dropped first.
-    tracker: DepthTracker<'static>,
-    a: Arc<Model>,
-    b: Arc<Model>,
-}
-
-/// Threads may pass trackers on, as the header says.
-const _: () = {
-    const fn passed<T: Send>() {}
-    passed::<qdist_mesh_tracker>();
-};
-
-impl Tracker {
-    fn new(a: Arc<Model>, b: Arc<Model>) -> Self {
-        // SAFETY: the models live at fixed addresses, are never written to, and are kept by the fields beside the tracker,
-        // which nothing takes out of this struct.
-        let [one, two]: [&'static Model; 2] = unsafe { [&*Arc::as_ptr(&a), &*Arc::as_ptr(&b)] };
-        Tracker { tracker: DepthTracker::new(one, two), a, b }
-    }
-
-    /// Asks the tracker. A panic leaves it as new.
-    fn ask<R>(&mut self, question: impl FnOnce(&mut DepthTracker<'static>) -> R) -> Check<R> {
-        let answer = caught(|| question(&mut self.tracker));
-        answer.ok_or_else(|| {
-            *self = Tracker::new(self.a.clone(), self.b.clone());
-            QDIST_ERROR_INTERNAL
-        })
-    }
-}
-
-/// A tracker of the caller, for one call.
-fn exclusive(tracker: &Out<qdist_mesh_tracker>) -> Check<Taken<'_, Tracker>> {
-    tracker.get()?.0.take()
-}
+pub struct qdist_mesh_tracker(Exclusive<Between<DepthTracker<'static>>>);
 
 /// Asked before every query of a tick; anything but 0 ends the tick with QDIST_MESH_INTERRUPTED and the bracket so far. Look at a clock, or, to
 /// cancel, at a flag that another thread sets (atomically).
@@ -97,7 +58,6 @@ pub struct qdist_mesh_budget {
 }
 
 gaps!(qdist_mesh_budget, effort..mass, late_user..);
-
 versioned!(qdist_mesh_budget);
 
 impl Defaults for qdist_mesh_budget {
@@ -111,10 +71,7 @@ impl Defaults for qdist_mesh_budget {
             probes: usual.probes,
             certify: usual.certificate.is_some() as u32,
             effort: QDIST_MESH_FAST,
-            mass: In::NULL,
-            own: In::NULL,
-            late: None,
-            late_user: null_mut(),
+            ..Self::ZERO
         }
     }
 }
@@ -137,16 +94,12 @@ struct Tick {
 
 impl Tick {
     fn new(budget: In<qdist_mesh_budget>) -> Check<Tick> {
-        let budget = if budget.is_null() { qdist_mesh_budget::defaults() } else { budget.version()? };
+        let budget = budget.or_default()?;
         let metric = Chosen::new(budget.metric, budget.mass, budget.own)?;
-        finite(&[budget.relative])?;
-        if budget.relative < 0.0 {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        let effort = effort(budget.effort)?;
+        let (relative, effort) = (not_negative(budget.relative)?, effort(budget.effort)?);
         let limits = Budget {
             max_queries: budget.max_queries,
-            relative: budget.relative,
+            relative,
             probes: budget.probes,
             certificate: flag(budget.certify)?.then_some(effort),
         };
@@ -165,15 +118,14 @@ pub extern "C" fn qdist_mesh_tracker_create(
 ) -> qdist_status {
     guard(|| {
         tracker.checked()?;
-        let (a, b) = (a.get()?.model.clone(), b.get()?.model.clone());
-        tracker.put(Box::into_raw(Box::new(qdist_mesh_tracker(Exclusive::new(Tracker::new(a, b))))))
+        tracker.put(Box::into_raw(Box::new(qdist_mesh_tracker(Between::of(a, b, DepthTracker::new)?))))
     })
 }
 
 /// Frees a tracker; NULL is nothing, and so is the tracker that is calling the caller.
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_free(tracker: Out<qdist_mesh_tracker>) {
-    if exclusive(&tracker).is_ok() {
+    if tracker.get().is_ok_and(|tracker| tracker.0.take().is_ok()) {
         // SAFETY: the header: from qdist_mesh_tracker_create, once.
         drop(unsafe { tracker.boxed() });
     }
@@ -195,7 +147,7 @@ pub extern "C" fn qdist_mesh_tracker_update(
 ) -> qdist_status {
     guard(|| {
         depth.known()?;
-        let (mut tracker, pose, tick) = (exclusive(&tracker)?, pose.get()?.checked()?, Tick::new(budget)?);
+        let (mut tracker, pose, tick) = (tracker.get()?.0.take()?, pose.get()?.checked()?, Tick::new(budget)?);
         let model = tracker.a.clone();
         let metric = tick.metric.of(&model)?;
         let found = tracker.ask(|tracker| {
@@ -223,7 +175,7 @@ pub extern "C" fn qdist_mesh_tracker_merge(
     guard(|| {
         taken.optional()?;
         let pose = answer.current()?.pose.checked();
-        let (mut tracker, pose) = (exclusive(&tracker)?, pose?);
+        let (mut tracker, pose) = (tracker.get()?.0.take()?, pose?);
         // The tracker tests the pose, and believes nothing else.
         let answer = MeshDepth {
             outcome: Outcome::Bounded,
@@ -246,7 +198,7 @@ pub extern "C" fn qdist_mesh_tracker_merge(
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_mesh_tracker_reset(tracker: Out<qdist_mesh_tracker>) -> qdist_status {
     guard(|| {
-        let mut tracker = exclusive(&tracker)?;
+        let mut tracker = tracker.get()?.0.take()?;
         tracker.ask(DepthTracker::reset)
     })
 }

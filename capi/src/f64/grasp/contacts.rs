@@ -176,7 +176,7 @@ pub extern "C" fn qdist_primitives_f64(
     primitives: Out<qdist_primitive_f64>,
     which: Out<u32>,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         primitives.checked()?;
         which.optional()?;
         let active = flag(active)?;
@@ -190,8 +190,7 @@ pub extern "C" fn qdist_primitives_f64(
             ActiveForces::new(&contact, &jacobian, &frame, tolerance(rank_tolerance))?.primitive(&contact, &frame)
         };
         all_of(contacts, &which, primitive, |index, made| primitives.put_at(index, qdist_primitive_f64::of(&made)))
-    };
-    status(make())
+    })
 }
 
 /// What the joints of a finger can do about its contact: rank, and the shape of the set of active forces. rank_tolerance as above.
@@ -204,7 +203,7 @@ pub extern "C" fn qdist_active_forces_f64(
     rank_tolerance: f64,
     active: Out<qdist_active_f64>,
 ) -> qdist_status {
-    let ask = || {
+    status_of(|| {
         active.checked()?;
         let (contact, frame) = (contact.get()?, frame.get()?.checked()?);
         let HandContact { contact, jacobian } = contact.of_hand().map_err(from_contact)?;
@@ -216,8 +215,7 @@ pub extern "C" fn qdist_active_forces_f64(
             dimension: forces.dimension().unwrap_or(0) as u32,
             delta: forces.delta().unwrap_or(-1.0),
         })
-    };
-    status(ask())
+    })
 }
 
 /// The smallest subspace of R^6 that contains the wrenches of `count` primitives: its dimension, 0 to 6, and an orthonormal basis: coordinate k
@@ -235,7 +233,7 @@ pub extern "C" fn qdist_wrench_subspace_f64(
     dimension: Out<u32>,
     basis: Out<f64>,
 ) -> qdist_status {
-    let ask = || {
+    status_of(|| {
         dimension.checked()?;
         basis.checked()?;
         let list = qdist_primitive_f64::checked(primitives.array(Some(count as usize))?)?;
@@ -245,6 +243,5 @@ pub extern "C" fn qdist_wrench_subspace_f64(
             basis.put_at(index, x)?;
         }
         dimension.put(found.dimension() as u32)
-    };
-    status(ask())
+    })
 }

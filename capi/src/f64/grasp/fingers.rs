@@ -129,7 +129,7 @@ pub extern "C" fn qdist_finger_init_f64(
     rank_tolerance: f64,
     which: Out<u32>,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         finger.checked()?;
         which.optional()?;
         let model = force_model(model)?;
@@ -159,8 +159,7 @@ pub extern "C" fn qdist_finger_init_f64(
         })?;
         write(&finger, count, frame.torque_scale(), made);
         Ok(())
-    };
-    status(make())
+    })
 }
 
 /// Writes a finger with all of its bytes: its own and zeros.
@@ -199,7 +198,7 @@ pub extern "C" fn qdist_finger_forces_f64(
     direction: In<f64>,
     forces: Out<f64>,
 ) -> qdist_status {
-    let ask = || {
+    status_of(|| {
         forces.checked()?;
         let (list, u) = (CheckedFinger::list(finger.array(Some(1))?)?, direction.numbers::<6>()?);
         finite(&u)?;
@@ -211,8 +210,7 @@ pub extern "C" fn qdist_finger_forces_f64(
             }
         }
         Ok(())
-    };
-    status(ask())
+    })
 }
 
 /// The smallest contact forces that keep the object in equilibrium with an external wrench, as qdist_contact_forces: share i is that of finger
@@ -234,7 +232,7 @@ pub extern "C" fn qdist_finger_contact_forces_f64(
     forces: Out<f64>,
     result: Out<qdist_forces_f64>,
 ) -> qdist_status {
-    let solve = || {
+    status_of(|| {
         forces.optional()?;
         let wrenches = wrenches.get()?;
         let (fingers, set) = (wrenches.fingers()?, wrenches.checked()?);
@@ -250,6 +248,5 @@ pub extern "C" fn qdist_finger_contact_forces_f64(
             }
             Ok(())
         })
-    };
-    status(solve())
+    })
 }

@@ -21,11 +21,12 @@ pub struct qdist_force_options_f64 {
     pub limit: f64,
 }
 
+gaps!(qdist_force_options_f64);
 versioned!(qdist_force_options_f64);
 
 impl Defaults for qdist_force_options_f64 {
     fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as u32, max_iterations: 0, relative: 0.0, limit: 0.0 }
+        Self { struct_size: size_of::<Self>() as u32, ..Self::ZERO }
     }
 }
 
@@ -78,7 +79,7 @@ pub extern "C" fn qdist_wrench_f64(
     moment: In<f64>,
     wrench: Out<f64>,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         wrench.checked()?;
         let (frame, force, moment) = (frame.get()?.checked()?, force.numbers::<3>()?, moment.numbers::<3>()?);
         finite(&force)?;
@@ -86,8 +87,7 @@ pub extern "C" fn qdist_wrench_f64(
         let made: [f64; 6] = frame.wrench(&Vector::from(force), &Vector::from(moment)).into();
         finite(&made)?;
         wrench.rows().put(made)
-    };
-    status(make())
+    })
 }
 
 /// The smallest contact forces that keep the object in equilibrium with an external wrench.
@@ -107,8 +107,7 @@ pub extern "C" fn qdist_contact_forces_f64(
     shares: Out<f64>,
     result: Out<qdist_forces_f64>,
 ) -> qdist_status {
-    let solve = || resist(&wrenches.get()?.checked()?, memory, external, options, shares, result, |_| Ok(()));
-    status(solve())
+    status_of(|| resist(&wrenches.get()?.checked()?, memory, external, options, shares, result, |_| Ok(())))
 }
 
 /// `also` is called with the solver after the search.
@@ -134,7 +133,7 @@ pub(super) fn resist<C: Contribution<f64>>(
         (found.outcome, found.failure) = (ForceOutcome::SupportFailed, Some(failure));
     }
     if !memory.is_null() {
-        let mut kept = qdist_force_memory_f64 { count: 0, directions: [0.0; 36] };
+        let mut kept = qdist_force_memory_f64::ZERO;
         let (slots, _) = kept.directions.as_chunks_mut::<6>();
         for (slot, direction) in slots.iter_mut().zip(solver.known()) {
             *slot = (*direction).into();
@@ -164,11 +163,7 @@ fn recall(memory: &qdist_force_memory_f64) -> Check<ForceSolver<f64>> {
 }
 
 fn convert(options: In<qdist_force_options_f64>) -> Check<ForceOptions<f64>> {
-    let mut made = ForceOptions::default();
-    if options.is_null() {
-        return Ok(made);
-    }
-    let options = options.version()?;
+    let (mut made, options) = (ForceOptions::default(), options.or_default()?);
     let (relative, limit) = (length(options.relative)?, length(options.limit)?);
     if relative > 0.0 {
         made.relative = relative;
@@ -194,13 +189,12 @@ pub extern "C" fn qdist_contact_force_f64(
     share: In<f64>,
     force: Out<f64>,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         force.checked()?;
         let (contact, frame, share) = (contact.get()?.checked(), frame.get()?.checked()?, share.numbers::<6>()?);
         finite(&share)?;
         let made: [f64; 4] = frame.contact_force(&contact.map_err(from_contact)?, &Vector::from(share)).into();
         finite(&made)?;
         force.rows().put(made)
-    };
-    status(make())
+    })
 }

@@ -69,7 +69,7 @@ pub extern "C" fn qdist_grasp_gradients_f64(
     gradients: Out<qdist_contact_gradient_f64>,
     which: Out<u32>,
 ) -> qdist_status {
-    let ask = || {
+    status_of(|| {
         refined.checked()?;
         gradients.checked()?;
         which.optional()?;
@@ -95,22 +95,11 @@ pub extern "C" fn qdist_grasp_gradients_f64(
             upper: found.answer.upper,
             direction: padded(found.answer.direction.iter().copied()),
         })
-    };
-    status(ask())
+    })
 }
 
 fn from_gradient(gradient: Option<&ContactGradient<f64>>) -> qdist_contact_gradient_f64 {
-    let mut made = qdist_contact_gradient_f64 {
-        known: 0,
-        jacobian_known: 0,
-        position: [0.0; 3],
-        rotation: [0.0; 3],
-        normal: [0.0; 3],
-        mu: 0.0,
-        mus: 0.0,
-        force_cap: 0.0,
-        jacobian: [0.0; 32],
-    };
+    let mut made = qdist_contact_gradient_f64::ZERO;
     if let Some(gradient) = gradient {
         made.known = 1;
         made.position = gradient.position.into();

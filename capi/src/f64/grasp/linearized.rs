@@ -92,12 +92,11 @@ pub extern "C" fn qdist_preset_graspit_f64(
     millimetre: f64,
     norm: qdist_norm,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         preset.checked()?;
         let (center, norm) = (Vector::from(center.numbers::<3>()?), checked_norm(norm)?);
         fill(preset, QDIST_TOOL_GRASPIT, Preset::graspit(center, max_radius, millimetre, norm))
-    };
-    status(make())
+    })
 }
 
 /// Dex-Net's ferrari_canny_L1 with an object of this centre of mass, three numbers. torque_scale: the inverse of its torque_scaling, unless
@@ -114,13 +113,12 @@ pub extern "C" fn qdist_preset_dex_net_f64(
     sides: u32,
     finger_radius: f64,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         preset.checked()?;
         lengths([finger_radius])?;
         let center = Vector::from(center.numbers::<3>()?);
         fill(preset, QDIST_TOOL_DEX_NET, Preset::dex_net(center, torque_scale, sides as usize, finger_radius))
-    };
-    status(make())
+    })
 }
 
 /// FRoGGeR's ferrari_canny_L1, positions in the object's frame. Its defaults: 4 sides, and 1 for lamb > 0. For its min-weight metric see
@@ -129,11 +127,10 @@ pub extern "C" fn qdist_preset_dex_net_f64(
 /// Status: ARGUMENT (sides is below 3), FRAME (lamb).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_preset_frogger_f64(preset: Out<qdist_preset_f64>, sides: u32, lamb: f64) -> qdist_status {
-    let make = || {
+    status_of(|| {
         preset.checked()?;
         fill(preset, QDIST_TOOL_FROGGER, Preset::frogger(sides as usize, lamb))
-    };
-    status(make())
+    })
 }
 
 /// Completes a contact, given its position, normal and friction, as the tool has it: writes its tangents, and as force_cap the length of its
@@ -145,7 +142,7 @@ pub extern "C" fn qdist_preset_contact_f64(
     preset: In<qdist_preset_f64>,
     contact: Out<qdist_contact_f64>,
 ) -> qdist_status {
-    let complete = || {
+    status_of(|| {
         let (preset, own) = (preset.get()?, *contact.get()?);
         let bare = qdist_contact_f64 { tangents: [0.0; 6], force_cap: 0.0, ..own }.checked().map_err(from_contact)?;
         let zero = Vector::zeros();
@@ -160,6 +157,5 @@ pub extern "C" fn qdist_preset_contact_f64(
         let [o, t] = made.tangents();
         let tangents = [o.x, o.y, o.z, t.x, t.y, t.z];
         contact.put(qdist_contact_f64 { tangents, force_cap: made.force_cap(), ..own })
-    };
-    status(complete())
+    })
 }

@@ -102,15 +102,14 @@ pub extern "C" fn qdist_pyramid_edges_f64(
     friction: qdist_friction,
     edges: Out<u32>,
 ) -> qdist_status {
-    let count = || {
+    status_of(|| {
         edges.checked()?;
         let layout = layout.get()?.checked()?;
         if friction > QDIST_SOFT {
             return Err(QDIST_ERROR_CONTACT_FRICTION);
         }
         edges.put(u32::try_from(layout.edges(like(friction))).map_err(|_| QDIST_ERROR_ARGUMENT)?)
-    };
-    status(count())
+    })
 }
 
 /// A friction of this kind.
@@ -142,7 +141,7 @@ pub extern "C" fn qdist_pyramids_f64(
     pyramids: Out<qdist_pyramid_f64>,
     which: Out<u32>,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         edges.checked()?;
         pyramids.checked()?;
         which.optional()?;
@@ -180,8 +179,7 @@ pub extern "C" fn qdist_pyramids_f64(
             }
         }
         Ok(())
-    };
-    status(make())
+    })
 }
 
 fn from_cone(cone: &PyramidalCone<'_, f64>, edges: In<f64>) -> qdist_pyramid_f64 {
@@ -213,7 +211,7 @@ pub extern "C" fn qdist_opposed_mean_f64(
     pyramids: In<qdist_pyramid_f64>,
     count: u32,
 ) -> qdist_status {
-    let make = || {
+    status_of(|| {
         segment.checked()?;
         let list = CheckedPyramid::list(pyramids.array(Some(count as usize))?)?;
         let edges = || list.iter().flat_map(|pyramid| pyramid.edges().as_chunks::<6>().0);
@@ -222,6 +220,5 @@ pub extern "C" fn qdist_opposed_mean_f64(
         }
         let found = opposed(edges()).ok_or(QDIST_ERROR_ARGUMENT)?;
         segment.put(qdist_segment_unit_f64 { end: found.vertex(0).into(), dimension: 6 })
-    };
-    status(make())
+    })
 }

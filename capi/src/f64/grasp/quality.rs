@@ -52,7 +52,7 @@ pub extern "C" fn qdist_force_closure_f64(
     options: In<qdist_options_f64>,
     closure: Out<qdist_closure_f64>,
 ) -> qdist_status {
-    let solve = || {
+    status_of(|| {
         closure.checked()?;
         let set = set.get()?;
         let mut solver = handle::open::<f64, 6>(&solver)?;
@@ -71,8 +71,7 @@ pub extern "C" fn qdist_force_closure_f64(
         };
         let struct_size = size_of::<qdist_closure_f64>() as u32;
         closure.put_version(qdist_closure_f64 { struct_size, verdict, radius, direction })
-    };
-    status(solve())
+    })
 }
 
 /// The set with the largest d of `count` sets of dimension 6, 1 or more, in one solver's memory. A set is left as soon as it is certainly not
@@ -90,7 +89,7 @@ pub extern "C" fn qdist_best_of6_f64(
     options: In<qdist_options_f64>,
     best: Out<qdist_best_f64>,
 ) -> qdist_status {
-    let solve = || {
+    status_of(|| {
         best.checked()?;
         let sets = sets.array(Some(count as usize))?;
         let mut solver = handle::open::<f64, 6>(&solver)?;
@@ -110,6 +109,5 @@ pub extern "C" fn qdist_best_of6_f64(
             result: from_answer(&found.answer, q.code(found.answer.failure)),
         })?;
         if found.answer.failure.is_some() { Err(QDIST_ERROR_CALLBACK) } else { Ok(()) }
-    };
-    status(solve())
+    })
 }

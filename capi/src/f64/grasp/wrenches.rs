@@ -43,7 +43,7 @@ pub(super) trait Wrenches: 'static {
             error: checked.error(),
             dimension: 6,
             contains_origin: checked.contains_origin().into(),
-            ..qdist_set_f64::NONE
+            ..qdist_set_f64::ZERO
         })
     }
 }
