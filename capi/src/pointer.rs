@@ -258,8 +258,7 @@ impl<S> Out<S> {
         }
     }
 
-    /// The same from an index on.
-    #[cfg(feature = "grasp")]
+    /// What has been written from an index on, as something to read.
     pub(super) fn filled_from(&self, index: usize) -> In<S> {
         In(self.0.wrapping_add(index))
     }
@@ -281,11 +280,6 @@ impl<S> Out<S> {
     pub(super) unsafe fn boxed(&self) -> Option<Box<S>> {
         // SAFETY: the caller's promise.
         if self.0.is_null() { None } else { Some(unsafe { Box::from_raw(self.0) }) }
-    }
-
-    /// What has been written, as something to read.
-    pub(super) fn filled(&self) -> In<S> {
-        In(self.0)
     }
 
     /// Room for lists of `R`, which are numbers in a row.

@@ -92,6 +92,10 @@ unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
 /// A struct that knows its dimension at run time only.
 pub(super) trait Dimensioned: 'static {
     fn dimension(&self) -> Check<usize>;
+    /// Does the set not change when these coordinates change sign?
+    fn mirrored(&self, _signs: u8) -> bool {
+        false
+    }
 }
 
 /// `dimensioned!(type, field)`
@@ -107,9 +111,7 @@ macro_rules! dimensioned {
 
 dimensioned! {
     qdist_points_f64, dimension;
-    qdist_pair_f64, dimension;
     qdist_linear_f64, rows;
-    qdist_ellipsoid_unit_f64, dimension;
     qdist_box_unit_f64, dimension;
     qdist_cross_unit_f64, dimension;
     qdist_segment_unit_f64, dimension;
@@ -120,10 +122,6 @@ pub(super) trait AnswersAny: 'static {
     type Struct: Dimensioned;
     /// A point, or a code; `u` has as many numbers as the dimension, of which the answer's first count.
     fn farthest(of: &Self::Struct, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]>;
-    /// Does the set not change when these coordinates change sign?
-    fn mirrored(_of: &Self::Struct, _signs: u8) -> bool {
-        false
-    }
 }
 
 pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: bool>(
@@ -142,10 +140,10 @@ pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: boo
     })
 }
 
-pub(super) unsafe extern "C" fn mirrored_any<A: AnswersAny>(user: *mut c_void, signs: u32) -> i32 {
+pub(super) unsafe extern "C" fn mirrored_any<S: Dimensioned>(user: *mut c_void, signs: u32) -> i32 {
     // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let of = unsafe { In::<A::Struct>::new(user.cast()) };
-    i32::from(of.get().is_ok_and(|of| A::mirrored(of, signs as u8)))
+    let of = unsafe { In::<S>::new(user.cast()) };
+    i32::from(of.get().is_ok_and(|of| of.mirrored(signs as u8)))
 }
 
 fn put_first(room: &Out<f64>, point: &[f64; MAX_DIMENSION], n: usize) -> Check {
@@ -166,9 +164,6 @@ pub(super) trait AnswersUnit: Dimensioned {
     fn vertex(&self, _index: usize) -> Check<[f64; MAX_DIMENSION]> {
         Err(QDIST_ERROR_ARGUMENT)
     }
-    fn mirrored(&self, _signs: u32) -> bool {
-        false
-    }
 
     /// Fills a unit set: `stated` is what it says of itself, and `functions` which of those above it has.
     fn fill(unit: &Out<qdist_unit_f64>, shape: In<Self>, stated: qdist_unit_f64, has_mirrors: bool) -> Check
@@ -180,7 +175,7 @@ pub(super) trait AnswersUnit: Dimensioned {
             value: Some(unit_value::<Self>),
             point: Some(unit_point::<Self>),
             vertex: if has_vertices { Some(unit_vertex::<Self>) } else { None },
-            mirrored: if has_mirrors { Some(unit_mirrored::<Self>) } else { stated.mirrored },
+            mirrored: if has_mirrors { Some(mirrored_any::<Self>) } else { stated.mirrored },
             user: shape.user(),
             ..stated
         })
@@ -216,10 +211,4 @@ unsafe extern "C" fn unit_vertex<S: AnswersUnit>(user: *mut c_void, index: u32, 
         let of = of.get()?;
         put_first(&room, &of.vertex(index as usize)?, of.dimension()?)
     })
-}
-
-unsafe extern "C" fn unit_mirrored<S: AnswersUnit>(user: *mut c_void, signs: u32) -> i32 {
-    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let of = unsafe { In::<S>::new(user.cast()) };
-    i32::from(of.get().is_ok_and(|of| of.mirrored(signs)))
 }

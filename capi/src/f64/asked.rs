@@ -1,7 +1,6 @@
 //! A query from arguments to result: what the exported functions of one question do before and after they ask the solver.
 
 use super::*;
-use qdist::qset::UnitSet;
 
 /// The options as the solver knows them, and the deadline.
 pub(super) fn convert<const N: usize>(options: In<qdist_options_f64>) -> Check<(Options<'static, f64, N>, Deadline)> {
@@ -137,7 +136,7 @@ impl Question {
         self.result.known()?;
         let a = CheckedSet::new::<N>(a)?;
         let (options, deadline) = convert::<N>(self.options)?;
-        let q = CheckedUnit::new::<N>(self.q)?;
+        let q = CheckedUnit::new::<N>(&self.q)?;
         let answer = deadline.during(&options, |options| query(&mut solver, &a, q.unit(), options));
         overflow(answer.failure)?;
         let code = q.code(answer.failure);

@@ -81,6 +81,17 @@ fn norm(v: &[f64]) -> f64 {
 
 // ------------------------------------------------------------------------------------------------- pairs
 
+impl Dimensioned for qdist_pair_f64 {
+    fn dimension(&self) -> Check<usize> {
+        dimension(self.dimension)
+    }
+    /// Is it certain that a change of sign leaves both parts as they are?
+    fn mirrored(&self, signs: u8) -> bool {
+        let stays = |set: &In<qdist_set_f64>| set.get().is_ok_and(|set| set.is_mirrored(signs));
+        stays(&self.a) && stays(&self.b)
+    }
+}
+
 impl qdist_pair_f64 {
     /// Both sets, and their dimension.
     fn checked(&self) -> Check<(&qdist_set_f64, &qdist_set_f64, usize)> {
@@ -89,12 +100,6 @@ impl qdist_pair_f64 {
         a.check(n)?;
         b.check(n)?;
         Ok((a, b, n))
-    }
-
-    /// Is it certain that a change of sign leaves both parts as they are?
-    fn mirrored(&self, signs: u8) -> bool {
-        let stays = |set: &In<qdist_set_f64>| set.get().is_ok_and(|set| set.is_mirrored(signs));
-        stays(&self.a) && stays(&self.b)
     }
 
     /// The set that is made of the pair by `A`, with sizes still to be filled in.
@@ -107,7 +112,7 @@ impl qdist_pair_f64 {
         qdist_set_f64 {
             support: Some(support_any::<A, false>),
             exhaustive: if a.exhaustive.or(b.exhaustive).is_some() { Some(support_any::<A, true>) } else { None },
-            mirrored: if a.mirrored.and(b.mirrored).is_some() { Some(mirrored_any::<A>) } else { None },
+            mirrored: if a.mirrored.and(b.mirrored).is_some() { Some(mirrored_any::<Self>) } else { None },
             user: pair.user(),
             dimension: n as u32,
             ..qdist_set_f64::ZERO
@@ -133,9 +138,6 @@ impl<const DIFFERENCE: bool> AnswersAny for Sum<DIFFERENCE> {
             *x += sign * y;
         }
         Ok(sum)
-    }
-    fn mirrored(pair: &qdist_pair_f64, signs: u8) -> bool {
-        pair.mirrored(signs)
     }
 }
 
@@ -187,9 +189,6 @@ impl AnswersAny for Join {
         } else {
             Ok(y)
         }
-    }
-    fn mirrored(pair: &qdist_pair_f64, signs: u8) -> bool {
-        pair.mirrored(signs)
     }
 }
 

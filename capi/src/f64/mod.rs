@@ -21,6 +21,7 @@ pub mod warm;
 
 use crate::vocabulary::*;
 use qdist::nalgebra::SMatrix;
+use qdist::qset::UnitSet;
 use {
     answers::*, asked::*, bodies::*, combine::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, unit_shapes::*,
 };

@@ -32,7 +32,6 @@ pub struct qdist_body2_f64 {
     /// As in qdist_body_f64.
     pub precise: qdist_precise_f64,
 }
-
 gaps!(qdist_body2_f64, set.contains_origin..rotation, errors..unbounded, precise..);
 
 /// All points within `radius` of the origin.

@@ -31,7 +31,6 @@ pub struct qdist_hull_f64 {
     /// Length of `graph`.
     pub graph_len: u32,
 }
-
 gaps!(qdist_hull_f64, points.dimension..graph, graph_len..);
 
 /// The same of any number of points. Made by qdist_hull_large_prepare_f64.
@@ -44,7 +43,6 @@ pub struct qdist_hull_large_f64 {
     /// Length of `graph`.
     pub graph_len: u32,
 }
-
 gaps!(qdist_hull_large_f64, points.dimension..graph, graph_len..);
 
 // The macros of the header.
@@ -109,7 +107,7 @@ pub extern "C" fn qdist_hull_prepare_f64(
         Deadline::new(interrupt, interrupt_user)
             .asked(|interrupt| solver.prepare_hull(as_points(coordinates), words, interrupt).map(|_| ()))
             .map_err(from_graph)?;
-        hull.put(qdist_hull_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
+        hull.put(qdist_hull_f64 { points: list, graph: graph.filled_from(0), graph_len: graph_capacity })
     })
 }
 
@@ -151,7 +149,7 @@ pub extern "C" fn qdist_hull_large_prepare_f64(
         Deadline::new(interrupt, interrupt_user)
             .asked(|interrupt| prepare_hull(as_points(coordinates), words, facets, interrupt).map(|_| ()))
             .map_err(from_graph)?;
-        hull.put(qdist_hull_large_f64 { points: list, graph: graph.filled(), graph_len: graph_capacity })
+        hull.put(qdist_hull_large_f64 { points: list, graph: graph.filled_from(0), graph_len: graph_capacity })
     })
 }
 

@@ -51,7 +51,6 @@ pub struct qdist_options_f64 {
     /// numbers count, as many as the dimension.
     pub guess: [f64; 6],
 }
-
 gaps!(qdist_options_f64, guess..);
 versioned!(qdist_options_f64);
 
@@ -88,7 +87,6 @@ pub struct qdist_depth_f64 {
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     pub callback_code: i32,
 }
-
 gaps!(qdist_depth_f64, callback_code..);
 versioned!(qdist_depth_f64);
 
@@ -141,7 +139,6 @@ pub struct qdist_result_f64 {
     /// What the failed callback returned, or QDIST_CALLBACK_NONFINITE; else 0.
     pub callback_code: i32,
 }
-
 gaps!(qdist_result_f64, callback_code..);
 versioned!(qdist_result_f64);
 

@@ -52,7 +52,6 @@ pub struct qdist_set_f64 {
     /// it (what is its own image under a change of all signs contains the origin). What is stated must be true, or the bracket is not.
     pub contains_origin: u32,
 }
-
 gaps!(qdist_set_f64, contains_origin..);
 
 /// A set in space with a pose: x -> rotation * x + translation.
@@ -90,7 +89,6 @@ pub struct qdist_body_f64 {
     /// shapes, points and hulls put it here. Called with set.user.
     pub precise: qdist_precise_f64,
 }
-
 gaps!(qdist_body_f64, set.contains_origin..rotation, symmetry..unbounded, precise..);
 
 impl qdist_set_f64 {

@@ -5,7 +5,10 @@
 //! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them.
 
 use super::*;
-use qdist::qset::{Ball, UnitSet};
+use core::cell::Cell;
+use qdist::NOT_FINITE;
+use qdist::internal::norm;
+use qdist::qset::Ball;
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.
@@ -46,7 +49,6 @@ pub struct qdist_unit_f64 {
     /// The dimension that the functions work in; 0: not checked.
     pub dimension: u32,
 }
-
 gaps!(qdist_unit_f64, user..extent, dimension..);
 
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
@@ -91,7 +93,6 @@ pub struct qdist_segment_unit_f64 {
     /// 2 to 6.
     pub dimension: u32,
 }
-
 gaps!(qdist_segment_unit_f64, dimension..);
 
 /// Makes the ball of this radius > 0 around the origin, of any dimension.
@@ -148,14 +149,14 @@ pub extern "C" fn qdist_unit_vertices_f64(unit: Out<qdist_unit_f64>, shape: In<q
 }
 
 /// A unit set of the caller that has passed the checks.
-pub(super) enum CheckedUnit {
+pub(super) enum CheckedUnit<'a> {
     Ball(Ball<f64>),
-    Other(CallbackUnit<f64>),
+    Other(CallbackUnit<'a>),
 }
 
-impl CheckedUnit {
+impl<'a> CheckedUnit<'a> {
     /// Checks the numbers for dimension `N`; NULL: the unit ball.
-    pub(super) fn new<const N: usize>(q: In<qdist_unit_f64>) -> Check<Self> {
+    pub(super) fn new<const N: usize>(q: &'a In<qdist_unit_f64>) -> Check<Self> {
         let Some(q) = q.optional()? else { return Ok(Self::Ball(Ball::unit())) };
         if q.dimension != 0 && q.dimension as usize != N {
             return Err(QDIST_ERROR_DIMENSION);
@@ -163,10 +164,7 @@ impl CheckedUnit {
         if length(q.ball_radius)? > 0.0 {
             return Ball::new(q.ball_radius).map(Self::Ball).map_err(from_shape);
         }
-        let &qdist_unit_f64 { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count, .. } = q;
-        let parts = Parts { value, point, vertex, mirrored, user, extent, inner_radius, vertex_count };
-        // SAFETY: what the header asks of the caller: the functions may be called with `user`, in dimension `N`, during the call.
-        unsafe { CallbackUnit::new::<N>(parts) }.map(Self::Other)
+        CallbackUnit::new::<N>(q).map(Self::Other)
     }
 
     pub(super) fn unit<const N: usize>(&self) -> &dyn UnitSet<f64, N> {
@@ -182,5 +180,104 @@ impl CheckedUnit {
             Self::Ball(_) => code(failure),
             Self::Other(unit) => unit.code(failure),
         }
+    }
+}
+
+/// A unit set of the caller that is no ball, as a [`UnitSet`].
+pub(super) struct CallbackUnit<'a> {
+    given: &'a qdist_unit_f64,
+    value: unsafe extern "C" fn(user: *mut c_void, direction: *const f64) -> f64,
+    error: f64,
+    /// The code of the vertex function that failed, else 0.
+    code: Cell<i32>,
+}
+
+impl<'a> CallbackUnit<'a> {
+    /// Checks the numbers. Where the extent is not known, the values along the axes bound it. (The header: the functions may be called with `user`, in
+    /// dimension `N`, during the call.)
+    fn new<const N: usize>(given: &'a qdist_unit_f64) -> Check<Self> {
+        let value = given.value.ok_or(QDIST_ERROR_NULL)?;
+        if given.vertex_count > 0 && given.vertex.is_none() {
+            return Err(QDIST_ERROR_NULL);
+        }
+        let mut extent = length(given.extent)?;
+        if length(given.inner_radius)? > extent && extent > 0.0 {
+            return Err(QDIST_ERROR_ARGUMENT);
+        }
+        let mut unit = Self { given, value, error: 0.0, code: Cell::new(0) };
+        if !(extent > 0.0) {
+            let mut corner = Vector::<f64, N>::zeros();
+            let mut axis = Vector::<f64, N>::zeros();
+            let mut empty = true;
+            for i in 0..N {
+                for sign in [1.0, -1.0] {
+                    axis[i] = sign;
+                    let value = unit.ask(&axis);
+                    // What is no value of a unit set makes the error NaN, and ends the query.
+                    corner[i] = if value >= 0.0 { corner[i].at_least(value) } else { f64::NAN };
+                    empty &= value == 0.0;
+                }
+                axis[i] = 0.0;
+            }
+            if empty {
+                return Err(QDIST_ERROR_ARGUMENT);
+            }
+            extent = norm(&corner);
+        }
+        unit.error = f64::count(16 * N) * f64::ROUNDOFF * extent;
+        Ok(unit)
+    }
+
+    /// The code of the vertex function, if that ended the query with `failure`.
+    pub fn code(&self, failure: Option<Failure>) -> i32 {
+        let failure = code(failure);
+        if failure == NOT_FINITE && self.code.get() != 0 { self.code.get() } else { failure }
+    }
+
+    #[inline(always)]
+    fn ask<const N: usize>(&self, u: &Vector<f64, N>) -> f64 {
+        // SAFETY: the promise of `new`; the vector is N numbers in a row.
+        unsafe { (self.value)(self.given.user, u.as_ptr()) }
+    }
+}
+
+impl<const N: usize> UnitSet<f64, N> for CallbackUnit<'_> {
+    #[inline]
+    fn value(&self, u: &Vector<f64, N>) -> Result<f64, Failure> {
+        Ok(self.ask(u))
+    }
+    fn mapping(&self, u: &Vector<f64, N>) -> Option<Vector<f64, N>> {
+        let mut point = Vector::<f64, N>::from_element(f64::NAN);
+        // SAFETY: the promise of `new`.
+        let code = unsafe { support(self.given.point, self.given.user, u.as_slice(), point.as_mut_slice()) };
+        (code == 0).then(|| one_by_one(&point))
+    }
+    fn vertex_count(&self) -> usize {
+        self.given.vertex_count as usize
+    }
+    /// NaN, which no ray is shot at, when the function fails.
+    fn vertex(&self, index: usize) -> Vector<f64, N> {
+        let mut point = Vector::<f64, N>::from_element(f64::NAN);
+        if let Some(function) = self.given.vertex {
+            // SAFETY: the promise of `new`; the vector is N numbers in a row.
+            let code = unsafe { function(self.given.user, index as u32, point.as_mut_ptr()) };
+            if code != 0 {
+                self.code.set(code);
+            }
+            if code != 0 || coordinates(point.as_slice()).is_err() {
+                point = Vector::from_element(f64::NAN);
+            }
+        }
+        point
+    }
+    fn inner_radius(&self) -> f64 {
+        self.given.inner_radius
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        // SAFETY: the promise of `new`.
+        unsafe { is_mirrored(self.given.mirrored, self.given.user, signs) }
+    }
+    fn error(&self) -> f64 {
+        self.error
     }
 }

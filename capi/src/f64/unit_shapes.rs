@@ -48,6 +48,25 @@ fn along(rotation: Option<&[f64]>, i: usize, u: &[f64]) -> f64 {
     }
 }
 
+impl Dimensioned for qdist_ellipsoid_unit_f64 {
+    fn dimension(&self) -> Check<usize> {
+        dimension(self.dimension)
+    }
+    /// Each axis must stay on its line.
+    fn mirrored(&self, signs: u8) -> bool {
+        let (Ok(axes), Ok(rotation)) = (self.semi_axes(), self.rotation()) else { return false };
+        let n = axes.len();
+        let stays = |matrix: &[f64], j: usize| {
+            let touched = |flipped: bool| {
+                let column = matrix.iter().skip(j).step_by(n.max(1)).enumerate();
+                column.filter(|&(i, _)| (signs >> i & 1 == 1) == flipped).any(|(_, &x)| x != 0.0)
+            };
+            !(touched(true) && touched(false))
+        };
+        rotation.is_none_or(|matrix| (0..n).all(|j| stays(matrix, j)))
+    }
+}
+
 impl AnswersUnit for qdist_ellipsoid_unit_f64 {
     /// |D R^T u|, with the axes divided by the largest, so that squares stay in range.
     fn value(&self, u: &[f64]) -> Check<f64> {
@@ -74,19 +93,6 @@ impl AnswersUnit for qdist_ellipsoid_unit_f64 {
             None => local,
             Some(matrix) => padded(matrix.chunks_exact(axes.len().max(1)).map(|row| dot(row, &local))),
         })
-    }
-    /// Each axis must stay on its line.
-    fn mirrored(&self, signs: u32) -> bool {
-        let (Ok(axes), Ok(rotation)) = (self.semi_axes(), self.rotation()) else { return false };
-        let n = axes.len();
-        let stays = |matrix: &[f64], j: usize| {
-            let touched = |flipped: bool| {
-                let column = matrix.iter().skip(j).step_by(n.max(1)).enumerate();
-                column.filter(|&(i, _)| (signs >> i & 1 == 1) == flipped).any(|(_, &x)| x != 0.0)
-            };
-            !(touched(true) && touched(false))
-        };
-        rotation.is_none_or(|matrix| (0..n).all(|j| stays(matrix, j)))
     }
 }
 

@@ -32,7 +32,6 @@ pub struct qdist_tracker_f64 {
     /// Unit vectors, the last minimiser first; unused ones are 0.
     pub directions: [[f64; 6]; 4],
 }
-
 gaps!(qdist_tracker_f64);
 
 /// Makes a tracker that remembers nothing, for a dimension of 2 to 6. Do it again when Q changes.
@@ -193,7 +192,7 @@ impl qdist_tracker_f64 {
 
     fn lower_after<const N: usize>(&self, q: In<qdist_unit_f64>, moved: f64) -> Check<f64> {
         let tracker = self.checked::<N>()?;
-        Ok(tracker.lower_after(moved, CheckedUnit::new::<N>(q)?.unit()).unwrap_or(-f64::HUGE))
+        Ok(tracker.lower_after(moved, CheckedUnit::new::<N>(&q)?.unit()).unwrap_or(-f64::HUGE))
     }
 }
 

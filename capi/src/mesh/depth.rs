@@ -117,7 +117,6 @@ pub struct qdist_mesh_options {
     /// For `watch`.
     pub watch_user: *mut c_void,
 }
-
 gaps!(qdist_mesh_options, watch_user..);
 versioned!(qdist_mesh_options);
 
@@ -163,7 +162,6 @@ pub struct qdist_mesh_depth {
     /// Distance queries that it took.
     pub distance_queries: u64,
 }
-
 gaps!(qdist_mesh_depth);
 versioned!(qdist_mesh_depth);
 

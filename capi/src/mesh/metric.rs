@@ -59,7 +59,6 @@ pub struct qdist_mesh_own_metric {
     /// For both.
     pub user: *mut c_void,
 }
-
 versioned!(qdist_mesh_own_metric);
 
 /// What was chosen, checked.

@@ -55,7 +55,6 @@ pub struct qdist_mesh_report {
     /// Closed components without volume, to rounding.
     pub flat_components: u32,
 }
-
 gaps!(qdist_mesh_report);
 versioned!(qdist_mesh_report);
 
@@ -70,7 +69,6 @@ pub struct qdist_mesh_mass {
     /// Inertia tensor about the centre of mass, integral of |x|^2 1 - x x^T, in the mesh's axes, row-major.
     pub inertia: [f64; 9],
 }
-
 gaps!(qdist_mesh_mass);
 
 /// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each

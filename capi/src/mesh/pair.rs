@@ -100,7 +100,6 @@ impl qdist_mesh_distance {
         qdist_mesh_distance { distance: found.distance, on_a, on_b, feature_a, index_a, feature_b, index_b }
     }
 }
-
 gaps!(qdist_mesh_distance);
 
 /// Two features at a local minimum of their distance, in the frame of B.
@@ -130,7 +129,6 @@ impl qdist_mesh_contact {
         qdist_mesh_contact { gap: found.gap, on_a, on_b, normal, feature_a, index_a, feature_b, index_b }
     }
 }
-
 gaps!(qdist_mesh_contact);
 
 /// Makes a pair of two meshes, which may be the same. Allocates; O(1). The meshes may be freed before it.

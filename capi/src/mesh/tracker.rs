@@ -56,7 +56,6 @@ pub struct qdist_mesh_budget {
     /// For `late`.
     pub late_user: *mut c_void,
 }
-
 gaps!(qdist_mesh_budget, effort..mass, late_user..);
 versioned!(qdist_mesh_budget);
 

@@ -35,7 +35,6 @@ pub struct qdist_contact_f64 {
     /// angular velocity about n. Joint torques are J^T f. Locked joints have no column; joints that one actuator drives together share one.
     pub jacobian: [f64; 32],
 }
-
 gaps!(qdist_contact_f64, joints..jacobian);
 
 /// Wrenches are (force, moment about `reference` / `torque_scale`).
@@ -61,7 +60,6 @@ pub struct qdist_primitive_f64 {
     /// 1: the contact can exert nothing.
     pub empty: u32,
 }
-
 gaps!(qdist_primitive_f64, empty..);
 
 /// What the joints of a finger can do about a contact.
@@ -77,7 +75,6 @@ pub struct qdist_active_f64 {
     /// 1 less the square of the friction that the force in the middle needs; below 0: the joints press outside of the friction cone.
     pub delta: f64,
 }
-
 gaps!(qdist_active_f64, dimension..delta);
 
 impl qdist_contact_f64 {

@@ -20,7 +20,6 @@ pub struct qdist_force_options_f64 {
     /// Larger forces are of no interest: the search ends when the least size is known to be above; 0: no limit.
     pub limit: f64,
 }
-
 gaps!(qdist_force_options_f64);
 versioned!(qdist_force_options_f64);
 
@@ -40,7 +39,6 @@ pub struct qdist_force_memory_f64 {
     /// Coordinate k of direction i is directions[6 * i + k].
     pub directions: [f64; 36],
 }
-
 gaps!(qdist_force_memory_f64, count..directions);
 
 /// What is known about the least size of contact forces that resist a wrench.
@@ -64,7 +62,6 @@ pub struct qdist_forces_f64 {
     /// QDIST_CALLBACK_NONFINITE when a primitive is no number, QDIST_CALLBACK_UNSOLVED of fingers; else 0.
     pub callback_code: i32,
 }
-
 gaps!(qdist_forces_f64);
 versioned!(qdist_forces_f64);
 

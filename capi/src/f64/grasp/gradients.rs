@@ -18,7 +18,6 @@ pub struct qdist_refined_f64 {
     /// The unit vector that proves `upper`.
     pub direction: [f64; 6],
 }
-
 gaps!(qdist_refined_f64);
 versioned!(qdist_refined_f64);
 
@@ -44,7 +43,6 @@ pub struct qdist_contact_gradient_f64 {
     /// With respect to the entries of the Jacobian.
     pub jacobian: [f64; 32],
 }
-
 gaps!(qdist_contact_gradient_f64);
 
 /// The gradients of d with respect to `count` contacts, as many as there are primitives in `wrenches`, which were made of them with this frame and,
@@ -77,7 +75,7 @@ pub extern "C" fn qdist_grasp_gradients_f64(
         refined.known()?;
         let set = wrenches.get()?.checked()?;
         let contacts = contacts.array(Some(count as usize))?;
-        let (frame, q) = (frame.get()?.checked()?, CheckedUnit::new::<6>(q)?);
+        let (frame, q) = (frame.get()?.checked()?, CheckedUnit::new::<6>(&q)?);
         let result = result.current()?;
         if set.contributions().len() != contacts.len() {
             return Err(QDIST_ERROR_ARGUMENT);

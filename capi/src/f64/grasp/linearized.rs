@@ -33,7 +33,6 @@ pub struct qdist_preset_f64 {
     /// How tangents lie: QDIST_TOOL_GRASPIT, QDIST_TOOL_DEX_NET or QDIST_TOOL_FROGGER.
     pub tool: qdist_tool,
 }
-
 gaps!(qdist_preset_f64);
 
 impl qdist_layout_f64 {

@@ -4,7 +4,6 @@
 
 use super::*;
 use qdist::internal::{opposed, usable};
-use qdist::qset::UnitSet;
 
 /// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
 #[repr(C)]
@@ -17,7 +16,6 @@ pub struct qdist_pyramid_f64 {
     pub extent: f64,
     pub error: f64,
 }
-
 gaps!(qdist_pyramid_f64, count..extent, error..);
 
 /// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.

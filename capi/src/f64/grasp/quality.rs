@@ -19,7 +19,6 @@ pub struct qdist_closure_f64 {
     /// is not resisted. QDIST_CLOSURE_UNDECIDED: the weakest direction so far. Else 0.
     pub direction: [f64; 6],
 }
-
 gaps!(qdist_closure_f64);
 versioned!(qdist_closure_f64);
 
@@ -36,7 +35,6 @@ pub struct qdist_best_f64 {
     /// Its result; its struct_size, too, is set before the call.
     pub result: qdist_result_f64,
 }
-
 gaps!(qdist_best_f64, result.callback_code..);
 versioned!(qdist_best_f64);
 
@@ -97,7 +95,7 @@ pub extern "C" fn qdist_best_of6_f64(
         best.part::<qdist_result_f64>(core::mem::offset_of!(qdist_best_f64, result))?.known()?;
         sets.iter().try_for_each(|set| set.check(6))?;
         let (options, deadline) = convert::<6>(options)?;
-        let q = CheckedUnit::new::<6>(q)?;
+        let q = CheckedUnit::new::<6>(&q)?;
         let checked = sets.iter().filter_map(|set| CheckedSet::new::<6>(set).ok());
         let found = deadline.during(&options, |options| solver.best_of(checked, q.unit(), options));
         let found = found.ok_or(QDIST_ERROR_ARGUMENT)?;

@@ -24,8 +24,8 @@ pub(super) trait Wrenches: 'static {
     fn checked(&self) -> Check<WrenchSet<'_, f64, Self::Contribution<'_>>>;
     /// The same without what takes a pass over the numbers.
     fn unchecked(&self) -> Check<WrenchSet<'_, f64, Self::Contribution<'_>>>;
-    /// Does the list know its mirror images?
-    const MIRRORED: bool = false;
+    /// Where the list knows its mirror images.
+    const MIRRORED: qdist_mirrored = None;
 
     /// Makes a set of it.
     fn fill(set: Out<qdist_set_f64>, wrenches: In<Self>) -> Check
@@ -37,7 +37,7 @@ pub(super) trait Wrenches: 'static {
         lengths([checked.extent(), checked.error()])?;
         set.put(qdist_set_f64 {
             support: support_of::<Exerted<Self>, 6>(),
-            mirrored: if Self::MIRRORED { Some(mirrored::<Self>) } else { None },
+            mirrored: Self::MIRRORED,
             user: wrenches.user(),
             extent: checked.extent(),
             error: checked.error(),
@@ -59,17 +59,19 @@ impl<W: Wrenches> Answers<6> for Exerted<W> {
     }
 }
 
-/// By comparison of all contributions.
-unsafe extern "C" fn mirrored<W: Wrenches>(user: *mut c_void, signs: u32) -> i32 {
-    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let wrenches = unsafe { In::<W>::new(user.cast()) };
-    let ask = || -> Check<bool> { Ok(wrenches.get()?.unchecked()?.mirrored(signs as u8)) };
-    i32::from(ask().unwrap_or(false))
+impl Dimensioned for qdist_wrenches_f64 {
+    fn dimension(&self) -> Check<usize> {
+        Ok(6)
+    }
+    /// By comparison of all contributions.
+    fn mirrored(&self, signs: u8) -> bool {
+        self.unchecked().is_ok_and(|set| set.mirrored(signs))
+    }
 }
 
 impl Wrenches for qdist_wrenches_f64 {
     type Contribution<'a> = Primitive<f64>;
-    const MIRRORED: bool = true;
+    const MIRRORED: qdist_mirrored = Some(mirrored_any::<Self>);
     fn checked(&self) -> Check<WrenchSet<'_, f64>> {
         let norm = checked_norm(self.norm)?;
         let list = self.primitives.array(Some(self.count as usize))?;
