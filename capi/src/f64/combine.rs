@@ -7,7 +7,6 @@ use super::*;
 
 /// Two sets of the same dimension.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_pair_f64 {
     pub a: In<qdist_set_f64>,
     pub b: In<qdist_set_f64>,
@@ -18,7 +17,6 @@ pub struct qdist_pair_f64 {
 /// The image of a set under x -> matrix * x + translation.
 /// The set must state its extent, or QDIST_ERROR_ARGUMENT: without, the rounding of the map cannot be bounded.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_linear_f64 {
     pub set: In<qdist_set_f64>,
     /// Row-major, `rows` x `columns`; any matrix.

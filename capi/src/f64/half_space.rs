@@ -14,7 +14,6 @@ use qdist::support::HalfSpace;
 
 /// The points x with normal . x <= offset. The normal points out of the half space; it need not be of unit length, but not 0.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_half_space_f64 {
     pub normal: [f64; 3],
     pub offset: f64,

@@ -10,7 +10,6 @@ use super::*;
 /// The convex hull of two bodies, in a common frame: that of the body which is made of it. They must outlive it; that which
 /// has changed must be made anew.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_join_f64 {
     pub a: In<qdist_body_f64>,
     pub b: In<qdist_body_f64>,

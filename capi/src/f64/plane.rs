@@ -36,28 +36,24 @@ gaps!(qdist_body2_f64, set.contains_origin..rotation, errors..unbounded, precise
 
 /// All points within `radius` of the origin.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_disc_f64 {
     pub radius: f64,
 }
 
 /// |x| <= half[0], |y| <= half[1].
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_box2_f64 {
     pub half: [f64; 2],
 }
 
 /// The ellipse with these semi axes along x and y.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_ellipse_f64 {
     pub semi_axes: [f64; 2],
 }
 
 /// All points within `radius` of the segment from (0, -half_height) to (0, half_height).
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_capsule2_f64 {
     pub radius: f64,
     pub half_height: f64,
@@ -65,7 +61,6 @@ pub struct qdist_capsule2_f64 {
 
 /// The points x with normal . x <= offset. The normal points out of the half plane; it need not be of unit length, but not 0.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_half_plane_f64 {
     pub normal: [f64; 2],
     pub offset: f64,
@@ -73,7 +68,6 @@ pub struct qdist_half_plane_f64 {
 
 /// The convex hull of two bodies, as qdist_join_f64.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_join2_f64 {
     pub a: In<qdist_body2_f64>,
     pub b: In<qdist_body2_f64>,

@@ -23,7 +23,6 @@ pub struct qdist_points_f64 {
 /// graph is plain numbers without addresses: it may be kept in a file or in flash. Any content is safe to use, and the time of a
 /// support call is bounded by the number of points.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_hull_f64 {
     /// Of dimension 3.
     pub points: qdist_points_f64,
@@ -35,7 +34,6 @@ gaps!(qdist_hull_f64, points.dimension..graph, graph_len..);
 
 /// The same of any number of points. Made by qdist_hull_large_prepare_f64.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_hull_large_f64 {
     /// Of dimension 3.
     pub points: qdist_points_f64,

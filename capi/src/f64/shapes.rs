@@ -16,28 +16,24 @@ use qdist::support::{BoxShape, Capsule, Cone, Cylinder, Ellipsoid, ShapeError, S
 
 /// All points within `radius` of the origin.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_sphere_f64 {
     pub radius: f64,
 }
 
 /// |x| <= half[0], |y| <= half[1], |z| <= half[2].
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_box_f64 {
     pub half: [f64; 3],
 }
 
 /// The ellipsoid with these semi axes along x, y and z.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_ellipsoid_f64 {
     pub semi_axes: [f64; 3],
 }
 
 /// x^2 + y^2 <= radius^2, |z| <= half_height.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_cylinder_f64 {
     pub radius: f64,
     pub half_height: f64,
@@ -45,7 +41,6 @@ pub struct qdist_cylinder_f64 {
 
 /// All points within `radius` of the segment from (0, 0, -half_height) to (0, 0, half_height).
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_capsule_f64 {
     pub radius: f64,
     pub half_height: f64,
@@ -53,7 +48,6 @@ pub struct qdist_capsule_f64 {
 
 /// The hull of the disk of `radius` at z = -half_height and the apex (0, 0, half_height).
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_cone_f64 {
     pub radius: f64,
     pub half_height: f64,

@@ -53,7 +53,6 @@ gaps!(qdist_unit_f64, user..extent, dimension..);
 
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_ellipsoid_unit_f64 {
     /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
@@ -65,7 +64,6 @@ pub struct qdist_ellipsoid_unit_f64 {
 
 /// The box |x_i| <= half[i]; sizes >= 0, not all zero.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_box_unit_f64 {
     /// The first `dimension` numbers count.
     pub half: [f64; 6],
@@ -75,7 +73,6 @@ pub struct qdist_box_unit_f64 {
 
 /// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_cross_unit_f64 {
     /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
@@ -86,7 +83,6 @@ pub struct qdist_cross_unit_f64 {
 /// The segment from the origin to `end`, which is not zero: the depth is how many times `end` fits into A from the origin, as
 /// for a ray.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_segment_unit_f64 {
     /// The first `dimension` numbers count.
     pub end: [f64; 6],

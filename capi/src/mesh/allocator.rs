@@ -11,7 +11,6 @@ use std::alloc::{GlobalAlloc, Layout, System};
 
 /// Functions that allocate. They may be called by all threads that call the library, at the same time, and must not unwind, longjmp, or call it.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_allocator {
     /// Memory of `size` bytes, at least 1, aligned to `align`, a power of two, which may be more than malloc's own (a cache line); or NULL
     /// when there is none. Then the process is aborted: the library's containers cannot go on without.

@@ -65,7 +65,6 @@ pub(super) fn effort(effort: qdist_mesh_effort) -> Check<Effort> {
 
 /// How far a query is.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_mesh_progress {
     /// The bracket so far; `upper` is DBL_MAX before the first free pose.
     pub lower: f64,

@@ -4,7 +4,7 @@
 
 use super::*;
 use qdist::mesh::mass::MassProperties;
-use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Sigma};
+use qdist::mesh::metric::{BodyFrame, Certificate, Metric, Weighted, WeightedError};
 use qdist::mesh::optimize::Quadratic;
 use qdist::nalgebra::{Matrix3, Matrix6, Vector6};
 
@@ -79,7 +79,7 @@ impl Chosen {
         match metric {
             QDIST_MESH_DISP => Ok(Chosen::Disp),
             QDIST_MESH_SIGMA if mass.is_null() => Ok(Chosen::Sigma),
-            QDIST_MESH_SIGMA => Weighted::new(mass.get()?).map(Chosen::Weighted),
+            QDIST_MESH_SIGMA => weighted(mass.get()?).map(Chosen::Weighted),
             QDIST_MESH_OWN => Own::new(own.current()?).map(Chosen::Own),
             _ => Err(QDIST_ERROR_ARGUMENT),
         }
@@ -98,49 +98,13 @@ impl Chosen {
     }
 }
 
-fn centre(centre: [f64; 3]) -> Check<Point3<f64>> {
-    let proper = centre.iter().all(|x| x.abs() <= MAX_COORDINATE);
-    if proper { Ok(Point3::from(centre)) } else { Err(QDIST_ERROR_NONFINITE) }
-}
-
-/// The root mean square over a mass of the caller's. What is proved of A's own is not of this one, so it is a metric of its own, without a
-/// lower bound.
-pub(super) struct Weighted(Sigma);
-
-impl Weighted {
-    /// Wants a positive volume, and an inertia tensor as a body can have it.
-    fn new(mass: &qdist_mesh_mass) -> Check<Self> {
-        finite(&mass.inertia)?;
-        finite(&[mass.volume])?;
-        let centre = centre(mass.centre)?;
-        let inertia = Matrix3::from_row_slice(&mass.inertia);
-        let size = inertia.amax();
-        if !(mass.volume > 0.0 && (size / mass.volume).is_normal()) {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        // Mass has no negative second moments, trace / 2 - I, and here it does not lie on a line.
-        let scaled = inertia / size;
-        let principal = scaled.symmetric_eigenvalues();
-        let is_body = principal.min() > 1e-9 && 2.0 * principal.max() <= principal.sum() + 1e-9;
-        if (scaled - scaled.transpose()).amax() > 1e-9 || !is_body {
-            return Err(QDIST_ERROR_ARGUMENT);
-        }
-        Ok(Weighted(Sigma::new(&MassProperties { volume: mass.volume, centre, inertia })))
-    }
-}
-
-impl Metric for Weighted {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        self.0.distance(from, to)
-    }
-
-    fn frame(&self) -> &BodyFrame {
-        self.0.frame()
-    }
-
-    fn model(&self, from: &Isometry3<f64>, at: &Isometry3<f64>) -> Quadratic {
-        self.0.model(from, at)
-    }
+/// The caller's mass, checked.
+fn weighted(mass: &qdist_mesh_mass) -> Check<Weighted> {
+    let (centre, inertia) = (Point3::from(mass.centre), Matrix3::from_row_slice(&mass.inertia));
+    Weighted::new(&MassProperties { volume: mass.volume, centre, inertia }).map_err(|error| match error {
+        WeightedError::NotFinite => QDIST_ERROR_NONFINITE,
+        _ => QDIST_ERROR_ARGUMENT,
+    })
 }
 
 /// The caller's functions as a metric.
@@ -156,7 +120,9 @@ impl Own {
     fn new(own: &qdist_mesh_own_metric) -> Check<Own> {
         let (Some(distance), Some(model)) = (own.distance, own.model) else { return Err(QDIST_ERROR_NULL) };
         coordinates(&[own.radius])?;
-        let centre = centre(own.centre)?;
+        if !own.centre.iter().all(|x| x.abs() <= MAX_COORDINATE) {
+            return Err(QDIST_ERROR_NONFINITE);
+        }
         if !(own.radius > 0.0) {
             return Err(QDIST_ERROR_ARGUMENT);
         }
@@ -166,7 +132,7 @@ impl Own {
             QDIST_MESH_OWN => Certificate::None,
             _ => return Err(QDIST_ERROR_ARGUMENT),
         };
-        let frame = BodyFrame { centre, axes: Matrix3::identity(), radius: own.radius };
+        let frame = BodyFrame { centre: Point3::from(own.centre), axes: Matrix3::identity(), radius: own.radius };
         Ok(Own { frame, certificate, distance, model, user: own.user })
     }
 }

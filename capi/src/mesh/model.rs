@@ -60,7 +60,6 @@ versioned!(qdist_mesh_report);
 
 /// Volume integrals at density 1.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_mesh_mass {
     /// Positive.
     pub volume: f64,

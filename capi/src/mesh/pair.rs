@@ -104,7 +104,6 @@ gaps!(qdist_mesh_distance);
 
 /// Two features at a local minimum of their distance, in the frame of B.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_mesh_contact {
     /// Distance of the points, at least 0.
     pub gap: f64,

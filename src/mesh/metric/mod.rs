@@ -5,15 +5,18 @@
 //!
 //! * [`Disp`]: the farthest that any point moves.
 //! * [`Sigma`]: the root mean square over the solid (the object norm's root).
+//! * [`Weighted`]: the same over a mass of yours.
 //!
 //! Always sqrt(sigma) <= DISP. A metric of your own implements [`Metric`] with a distance and a quadratic model of its square
 //! near a pose; the step comes with it.
 
 mod disp;
 mod sigma;
+mod weighted;
 
 pub use disp::{Disp, DispError};
 pub use sigma::Sigma;
+pub use weighted::{Weighted, WeightedError};
 
 use super::optimize::project::End;
 use super::optimize::quadratic::{self, minimise};

@@ -39,7 +39,6 @@ gaps!(qdist_contact_f64, joints..jacobian);
 
 /// Wrenches are (force, moment about `reference` / `torque_scale`).
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_wrench_frame_f64 {
     /// Usually the centre of mass.
     pub reference: [f64; 3],
@@ -64,7 +63,6 @@ gaps!(qdist_primitive_f64, empty..);
 
 /// What the joints of a finger can do about a contact.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_active_f64 {
     /// The rank of the Jacobian, 0 to 4.
     pub rank: u32,

@@ -33,7 +33,6 @@ const TAG: u32 = u32::from_le_bytes(*b"qdfi") ^ size_of::<f64>() as u32;
 /// The wrench set of a list of fingers, 1 or more, with {0} in it. In QDIST_L1 the fingers share one supply; the contacts of one
 /// finger do not. The list must outlive the sets that are made of it.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_finger_wrenches_f64 {
     pub fingers: In<qdist_finger_f64>,
     pub count: u32,

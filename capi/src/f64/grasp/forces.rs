@@ -32,7 +32,6 @@ impl Defaults for qdist_force_options_f64 {
 /// Where the last forces came from, for the next tick of a loop: it makes the search shorter, and costs no answer: where it does not help, the
 /// search begins anew without it. Plain numbers; start with `= {0}`.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_force_memory_f64 {
     /// 0 to 6.
     pub count: u32,

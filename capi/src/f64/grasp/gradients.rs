@@ -23,7 +23,6 @@ versioned!(qdist_refined_f64);
 
 /// The gradient of d with respect to one contact. Units: those of d over those of the parameter.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_contact_gradient_f64 {
     /// 0: there is none, and all numbers are 0: a kink, or a contact whose joints press on the very edge of its friction cone.
     pub known: u32,

@@ -9,7 +9,6 @@ use super::*;
 
 /// Where the edges of friction pyramids are.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_layout_f64 {
     /// QDIST_LAYOUT_INSCRIBED, QDIST_LAYOUT_CIRCUMSCRIBED, QDIST_LAYOUT_GRASPIT or QDIST_LAYOUT_DEX_NET.
     pub kind: qdist_layout,
@@ -22,7 +21,6 @@ pub struct qdist_layout_f64 {
 
 /// What one tool computes.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_preset_f64 {
     /// Reference point and torque scale.
     pub frame: qdist_wrench_frame_f64,

@@ -7,7 +7,6 @@ use qdist::internal::{opposed, usable};
 
 /// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_pyramid_f64 {
     /// Coordinate k of edge j is edges[6 * j + k], a wrench.
     pub edges: In<f64>,
@@ -20,7 +19,6 @@ gaps!(qdist_pyramid_f64, count..extent, error..);
 
 /// The wrench set of a list of pyramids, 1 or more, with {0} in it. The list and the edges must outlive the sets that are made of it.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_pyramid_wrenches_f64 {
     pub pyramids: In<qdist_pyramid_f64>,
     pub count: u32,

@@ -9,7 +9,6 @@ use super::*;
 
 /// The wrench set of a list of primitives, 1 or more, with {0} in it. The list must outlive the sets that are made of it.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct qdist_wrenches_f64 {
     pub primitives: In<qdist_primitive_f64>,
     pub count: u32,
