@@ -39,7 +39,8 @@
  *             options     ARGUMENT (absolute or relative negative, or both 0; use_threshold; use_guess), NONFINITE (absolute, relative, threshold,
  *                         guess).
  * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
- *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
+ *             what is read; options, and what ends the work; what is written; `which`. Lists are followed by their lengths.
+ *             which: NULL; or after an error that is about one of a list, such as a contact, its index is written there.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
@@ -61,8 +62,8 @@
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).
  * Frames      Right-handed. A body's pose takes points from its own frame to the world: x -> rotation * x + translation. All
  *             results are in the world frame.
- * Versions    Structs that may grow begin with struct_size, set by you to sizeof: a library of a later version takes those of an earlier header,
- *             which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
+ * Versions    Structs that may grow begin with struct_size. Set it to the sizeof of the struct before the call, of a result, too (a _default function
+ *             does it for options): a library of a later version takes those of an earlier header, which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
  *             meaning; new ones may be added, so that unknown ones must be expected. */
 
 #ifndef QDIST_H
@@ -765,7 +766,8 @@ qdist_status qdist_set_linear_f64(qdist_set_f64 *set,
  *
  * What one unit of depth means in each direction: a convex set Q that contains the origin, known by its support function
  * h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
- * ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them. */
+ * ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them. A struct's `dimension` is 2 to 6; of its
+ * six numbers the first `dimension` count. */
 
 /// h_Q(direction) = max { direction . q : q in Q } >= 0, for a finite direction that is not zero. A NaN or a negative number ends
 /// the query with QDIST_CALLBACK_NONFINITE.
@@ -806,36 +808,28 @@ typedef struct {
 
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 typedef struct {
-    /// The first `dimension` numbers count.
     double semi_axes[6];
     /// Row-major, `dimension` x `dimension`; NULL: identity.
     const double *rotation;
-    /// 2 to 6.
     uint32_t dimension;
 } qdist_ellipsoid_unit_f64;
 
 /// The box |x_i| <= half[i]; sizes >= 0, not all zero.
 typedef struct {
-    /// The first `dimension` numbers count.
     double half[6];
-    /// 2 to 6.
     uint32_t dimension;
 } qdist_box_unit_f64;
 
 /// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 typedef struct {
-    /// The first `dimension` numbers count.
     double semi_axes[6];
-    /// 2 to 6.
     uint32_t dimension;
 } qdist_cross_unit_f64;
 
 /// The segment from the origin to `end`, which is not zero: the depth is how many times `end` fits into A from the origin, as
 /// for a ray.
 typedef struct {
-    /// The first `dimension` numbers count.
     double end[6];
-    /// 2 to 6.
     uint32_t dimension;
 } qdist_segment_unit_f64;
 
@@ -900,7 +894,6 @@ QDIST_API qdist_status qdist_unit_vertices_f64(qdist_unit_f64 *unit, const qdist
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.
 typedef struct {
-    /// sizeof(qdist_options_f64).
     uint32_t struct_size;
     /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take half a second to two seconds in
     /// dimension 6 (`./x figures`; `cargo run --release --features std --example worst_case`), and 64 for each vertex of a polytopal Q.
@@ -926,7 +919,6 @@ typedef struct {
 
 /// The depth of two bodies.
 typedef struct {
-    /// sizeof(qdist_depth_f64); set it before the call.
     uint32_t struct_size;
     /// What was concluded.
     qdist_outcome outcome;
@@ -958,7 +950,6 @@ typedef struct {
 
 /// The generalized depth of the origin in a set.
 typedef struct {
-    /// sizeof(qdist_result_f64); set it before the call.
     uint32_t struct_size;
     /// What was concluded.
     qdist_outcome outcome;
@@ -1226,7 +1217,6 @@ qdist_status qdist_solve_in_span_f64(qdist_solver *solver,
 /// What a loop remembers: plain data without addresses, for one set, one unit set and one dimension. Made by
 /// qdist_tracker_init_f64.
 typedef struct {
-    /// sizeof(qdist_tracker_f64).
     uint32_t struct_size;
     uint32_t dimension;
     /// d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.

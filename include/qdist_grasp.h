@@ -222,7 +222,6 @@ typedef struct {
 ///
 /// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
 /// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
-/// which: NULL; or after an error that is a contact's, its index is written there.
 ///
 /// Status: ARGUMENT (active is neither 0 nor 1, or count is 0), FRAME (frame), TOLERANCE (rank_tolerance, where a contact has a Jacobian that
 /// counts); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS, CONTACT_FRICTION (friction, mu or mus),
@@ -289,7 +288,6 @@ qdist_status qdist_set_wrenches_f64(qdist_set_f64 *set,
 
 /// Is a grasp force-closed?
 typedef struct {
-    /// sizeof(qdist_closure_f64); set it before the call.
     uint32_t struct_size;
     /// QDIST_CLOSURE_OPEN, QDIST_CLOSURE_CLOSED or QDIST_CLOSURE_UNDECIDED.
     qdist_closure verdict;
@@ -302,7 +300,6 @@ typedef struct {
 
 /// The best of a list of sets.
 typedef struct {
-    /// sizeof(qdist_best_f64); set it before the call.
     uint32_t struct_size;
     /// Its place in the list, from 0.
     uint32_t index;
@@ -354,7 +351,6 @@ typedef struct {
 
 /// When a search for contact forces ends. NULL stands for the defaults.
 typedef struct {
-    /// sizeof(qdist_force_options_f64).
     uint32_t struct_size;
     /// The most steps (see `iterations` of qdist_forces); 0: 1000. With a memory twice as many at most.
     uint32_t max_iterations;
@@ -366,7 +362,6 @@ typedef struct {
 
 /// What is known about the least size of contact forces that resist a wrench.
 typedef struct {
-    /// sizeof(qdist_forces_f64); set it before the call.
     uint32_t struct_size;
     /// What was concluded.
     qdist_force_outcome outcome;
@@ -428,7 +423,6 @@ qdist_status qdist_contact_force_f64(const qdist_contact_f64 *contact,
 
 /// The weakest direction to rounding.
 typedef struct {
-    /// sizeof(qdist_refined_f64); set it before the call.
     uint32_t struct_size;
     /// QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
     qdist_kink kink;
@@ -463,7 +457,7 @@ typedef struct {
 /// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
 /// tolerance of 1e-2 is usually enough.
 ///
-/// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+/// gradients: room for `count`.
 ///
 /// Status: ARGUMENT (active is neither 0 nor 1; count is 0, or not that of wrenches; a flag of result), NONFINITE (a number of result), FRAME
 /// (frame), TOLERANCE (rank_tolerance), those of qdist_set_wrenches (wrenches) and of a unit set (q); of a contact, as of qdist_primitives.
@@ -514,7 +508,7 @@ typedef struct {
 /// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
 /// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
 /// qdist_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
-/// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
+/// which: of QDIST_ERROR_TORQUE_LIMIT the index of the joint.
 ///
 /// 5 microseconds where no limit counts; a millisecond or more, with 69 KB of stack in double, where there are limits and several contacts (`./x
 /// figures`, `./x stack`).
@@ -672,10 +666,9 @@ qdist_status qdist_pyramid_edges_f64(const qdist_layout_f64 *layout,
 /// Pyramids of `count` contacts: their edges, one contact's after the other's, go to `edges`, with room for `capacity` edges of six numbers, and
 /// `pyramids`, with room for `count`, points there.
 ///
-/// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
-/// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+/// After QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
 ///
-/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides, or length negative), NONFINITE
+/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity: there is no room for the edges); of layout: ARGUMENT (kind, sides, or length negative), NONFINITE
 /// (length), FRAME (length of QDIST_LAYOUT_GRASPIT); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
 /// CONTACT_FRICTION, CONTACT_CAP, CONTACT_WRENCH.
 QDIST_API

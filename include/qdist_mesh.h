@@ -91,7 +91,6 @@ typedef struct qdist_mesh qdist_mesh;
 /// What is wrong with a mesh, and where: a number of defects and the first of them, QDIST_MESH_NONE if there is none. Edges are given by
 /// their two vertices; triangles and vertices by their place in your arrays.
 typedef struct {
-    /// sizeof(qdist_mesh_report); set it before the call.
     uint32_t struct_size;
     /// 1 if the mesh bounds a solid, else 0.
     uint32_t solid;
@@ -136,8 +135,7 @@ typedef struct {
 /// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
 /// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`./x figures`).
 ///
-/// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
-/// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+/// which: of QDIST_ERROR_MESH_INDEX the triangle, of QDIST_ERROR_MESH_VERTEX the vertex; or NULL.
 ///
 /// Status: MESH_EMPTY (triangle_count is 0), MESH_INDEX (triangles; also where vertex_count is 0), MESH_VERTEX (xyz), MESH_COLLINEAR (xyz),
 /// CAPACITY (vertex_count or triangle_count).
@@ -198,14 +196,12 @@ typedef uint32_t qdist_mesh_feature;
 typedef struct {
     /// 0 where the surfaces meet.
     double distance;
-    /// A point of A.
+    /// Points of A and of B.
     double on_a[3];
-    /// A point of B.
     double on_b[3];
-    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A, and on B: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     qdist_mesh_feature feature_a;
     uint32_t index_a;
-    /// Where on B.
     qdist_mesh_feature feature_b;
     uint32_t index_b;
 } qdist_mesh_distance;
@@ -214,16 +210,14 @@ typedef struct {
 typedef struct {
     /// Distance of the points, at least 0.
     double gap;
-    /// A point of A.
+    /// Points of A and of B.
     double on_a[3];
-    /// A point of B.
     double on_b[3];
     /// Unit direction from B to A.
     double normal[3];
-    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A, and on B: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     qdist_mesh_feature feature_a;
     uint32_t index_a;
-    /// Where on B.
     qdist_mesh_feature feature_b;
     uint32_t index_b;
 } qdist_mesh_contact;
@@ -305,7 +299,6 @@ typedef void (*qdist_mesh_own_model)(void *user,
 /// A metric of yours. The bracket is true whatever the functions return, as far as `distance` does not change: with a poor model the
 /// answer is poor. They are called hundreds of times in a query, and must not unwind, longjmp, or use the pair or tracker that is calling them.
 typedef struct {
-    /// sizeof(qdist_mesh_own_metric).
     uint32_t struct_size;
     /// What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
     /// for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.
@@ -364,7 +357,6 @@ typedef int32_t (*qdist_mesh_watch)(void *user, const qdist_mesh_progress *progr
 
 /// What a query does. Begin with qdist_mesh_options_default.
 typedef struct {
-    /// sizeof(qdist_mesh_options).
     uint32_t struct_size;
     /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
     qdist_mesh_metric metric;
@@ -394,7 +386,6 @@ typedef struct {
 
 /// An answer: lower <= depth <= upper.
 typedef struct {
-    /// sizeof(qdist_mesh_depth); set it before the call.
     uint32_t struct_size;
     /// How the query ended, e.g. QDIST_MESH_CONVERGED.
     qdist_mesh_outcome outcome;
@@ -410,11 +401,9 @@ typedef struct {
     uint32_t solid;
     /// Walks along the boundary of the free space that were made.
     uint32_t walks;
-    /// Collision queries that it took.
+    /// How many queries of each kind it took.
     uint64_t collision_queries;
-    /// Contact queries that it took.
     uint64_t contact_queries;
-    /// Distance queries that it took.
     uint64_t distance_queries;
 } qdist_mesh_depth;
 
@@ -499,7 +488,6 @@ typedef int32_t (*qdist_mesh_late)(void *user);
 
 /// What a tick may cost, and by which metric it measures. Begin with qdist_mesh_budget_default.
 typedef struct {
-    /// sizeof(qdist_mesh_budget).
     uint32_t struct_size;
     /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
     qdist_mesh_metric metric;

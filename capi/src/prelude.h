@@ -39,7 +39,8 @@
  *             options     ARGUMENT (absolute or relative negative, or both 0; use_threshold; use_guess), NONFINITE (absolute, relative, threshold,
  *                         guess).
  * Arguments   come in one order: what works or is made (a solver, a pair; a body, a set, a hull); memory that it uses (a tracker, a workspace);
- *             what is read; options, and what ends the work; what is written; `which`, the place of what is wrong. Lists are followed by their lengths.
+ *             what is read; options, and what ends the work; what is written; `which`. Lists are followed by their lengths.
+ *             which: NULL; or after an error that is about one of a list, such as a contact, its index is written there.
  * Pointers    NULL is an error unless the text says otherwise. Pointers must be aligned for their type, and valid for what
  *             the text says; the library cannot check the latter.
  * Ownership   Everything is yours: solver memory, shapes, lists, results. The library allocates nothing, frees nothing, keeps
@@ -61,8 +62,8 @@
  *             sizes from 1e-140 to 1e140 (float: 1e-17 to 1e17).
  * Frames      Right-handed. A body's pose takes points from its own frame to the world: x -> rotation * x + translation. All
  *             results are in the world frame.
- * Versions    Structs that may grow begin with struct_size, set by you to sizeof: a library of a later version takes those of an earlier header,
- *             which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
+ * Versions    Structs that may grow begin with struct_size. Set it to the sizeof of the struct before the call, of a result, too (a _default function
+ *             does it for options): a library of a later version takes those of an earlier header, which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
  *             meaning; new ones may be added, so that unknown ones must be expected. */
 
 #ifndef QDIST_H

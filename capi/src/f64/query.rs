@@ -28,7 +28,6 @@ use super::*;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_options_f64 {
-    /// sizeof(qdist_options_f64).
     pub struct_size: u32,
     /// The most steps (see `iterations` of qdist_result), over all plans; 0: 50,000, which take half a second to two seconds in
     /// dimension 6 (`./x figures`; `cargo run --release --features std --example worst_case`), and 64 for each vertex of a polytopal Q.
@@ -58,7 +57,6 @@ versioned!(qdist_options_f64);
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_depth_f64 {
-    /// sizeof(qdist_depth_f64); set it before the call.
     pub struct_size: u32,
     /// What was concluded.
     pub outcome: qdist_outcome,
@@ -94,7 +92,6 @@ versioned!(qdist_depth_f64);
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_result_f64 {
-    /// sizeof(qdist_result_f64); set it before the call.
     pub struct_size: u32,
     /// What was concluded.
     pub outcome: qdist_outcome,

@@ -2,7 +2,8 @@
 //!
 //! What one unit of depth means in each direction: a convex set Q that contains the origin, known by its support function
 //! h_Q. The depth of the origin in A is the largest number d with d * Q inside A. Pass NULL for the unit ball, the
-//! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them.
+//! ordinary Euclidean depth. The structs and lists must outlive the unit set that is made of them. A struct's `dimension` is 2 to 6; of its
+//! six numbers the first `dimension` count.
 
 use super::*;
 use core::cell::Cell;
@@ -54,29 +55,23 @@ gaps!(qdist_unit_f64, user..extent, dimension..);
 /// The ellipsoid with these semi axes >= 0, not all zero, along the columns of `rotation`.
 #[repr(C)]
 pub struct qdist_ellipsoid_unit_f64 {
-    /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
     /// Row-major, `dimension` x `dimension`; NULL: identity.
     pub rotation: In<f64>,
-    /// 2 to 6.
     pub dimension: u32,
 }
 
 /// The box |x_i| <= half[i]; sizes >= 0, not all zero.
 #[repr(C)]
 pub struct qdist_box_unit_f64 {
-    /// The first `dimension` numbers count.
     pub half: [f64; 6],
-    /// 2 to 6.
     pub dimension: u32,
 }
 
 /// The hull of the points +- semi_axes[i] on axis i; sizes >= 0, not all zero.
 #[repr(C)]
 pub struct qdist_cross_unit_f64 {
-    /// The first `dimension` numbers count.
     pub semi_axes: [f64; 6],
-    /// 2 to 6.
     pub dimension: u32,
 }
 
@@ -84,9 +79,7 @@ pub struct qdist_cross_unit_f64 {
 /// for a ray.
 #[repr(C)]
 pub struct qdist_segment_unit_f64 {
-    /// The first `dimension` numbers count.
     pub end: [f64; 6],
-    /// 2 to 6.
     pub dimension: u32,
 }
 gaps!(qdist_segment_unit_f64, dimension..);

@@ -24,7 +24,6 @@ const _: () = assert!(REMEMBERED == 4);
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_tracker_f64 {
-    /// sizeof(qdist_tracker_f64).
     pub struct_size: u32,
     pub dimension: u32,
     /// d of the last set is not less; -DBL_MAX (float: FLT_MAX): not known.

@@ -89,7 +89,6 @@ pub type qdist_mesh_watch =
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_mesh_options {
-    /// sizeof(qdist_mesh_options).
     pub struct_size: u32,
     /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN.
     pub metric: qdist_mesh_metric,
@@ -138,7 +137,6 @@ impl Defaults for qdist_mesh_options {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_mesh_depth {
-    /// sizeof(qdist_mesh_depth); set it before the call.
     pub struct_size: u32,
     /// How the query ended, e.g. QDIST_MESH_CONVERGED.
     pub outcome: qdist_mesh_outcome,
@@ -154,11 +152,9 @@ pub struct qdist_mesh_depth {
     pub solid: u32,
     /// Walks along the boundary of the free space that were made.
     pub walks: u32,
-    /// Collision queries that it took.
+    /// How many queries of each kind it took.
     pub collision_queries: u64,
-    /// Contact queries that it took.
     pub contact_queries: u64,
-    /// Distance queries that it took.
     pub distance_queries: u64,
 }
 gaps!(qdist_mesh_depth);

@@ -45,7 +45,6 @@ pub type qdist_mesh_own_model = Option<
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_mesh_own_metric {
-    /// sizeof(qdist_mesh_own_metric).
     pub struct_size: u32,
     /// What the distance is nowhere less than, between any two poses: QDIST_MESH_DISP, or QDIST_MESH_SIGMA with A's own mass. Its lower bounds hold
     /// for yours, too, then. QDIST_MESH_OWN: not known, and `lower` is 0.

@@ -24,7 +24,6 @@ pub const QDIST_MESH_NONE: u32 = 4294967295;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_mesh_report {
-    /// sizeof(qdist_mesh_report); set it before the call.
     pub struct_size: u32,
     /// 1 if the mesh bounds a solid, else 0.
     pub solid: u32,
@@ -73,8 +72,7 @@ gaps!(qdist_mesh_mass);
 /// Makes a mesh of `vertex_count` vertices (x, y, z) and `triangle_count` triangles (three indices from 0), at most 2^30 of each
 /// (else QDIST_ERROR_CAPACITY). Allocates; O(n log n), some 4 microseconds per triangle (`./x figures`).
 ///
-/// Errors that name a place write it to `which`, unless NULL, and nothing else: QDIST_ERROR_MESH_INDEX the triangle,
-/// QDIST_ERROR_MESH_VERTEX the vertex. Further errors: QDIST_ERROR_MESH_EMPTY, QDIST_ERROR_MESH_COLLINEAR.
+/// which: of QDIST_ERROR_MESH_INDEX the triangle, of QDIST_ERROR_MESH_VERTEX the vertex; or NULL.
 ///
 /// Status: MESH_EMPTY (triangle_count is 0), MESH_INDEX (triangles; also where vertex_count is 0), MESH_VERTEX (xyz), MESH_COLLINEAR (xyz),
 /// CAPACITY (vertex_count or triangle_count).

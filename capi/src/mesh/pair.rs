@@ -81,14 +81,12 @@ fn xyz(point: &Point3<f64>) -> [f64; 3] {
 pub struct qdist_mesh_distance {
     /// 0 where the surfaces meet.
     pub distance: f64,
-    /// A point of A.
+    /// Points of A and of B.
     pub on_a: [f64; 3],
-    /// A point of B.
     pub on_b: [f64; 3],
-    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A, and on B: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     pub feature_a: qdist_mesh_feature,
     pub index_a: u32,
-    /// Where on B.
     pub feature_b: qdist_mesh_feature,
     pub index_b: u32,
 }
@@ -107,16 +105,14 @@ gaps!(qdist_mesh_distance);
 pub struct qdist_mesh_contact {
     /// Distance of the points, at least 0.
     pub gap: f64,
-    /// A point of A.
+    /// Points of A and of B.
     pub on_a: [f64; 3],
-    /// A point of B.
     pub on_b: [f64; 3],
     /// Unit direction from B to A.
     pub normal: [f64; 3],
-    /// Where on A: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
+    /// Where on A, and on B: QDIST_MESH_VERTEX, QDIST_MESH_EDGE or QDIST_MESH_FACE, and which.
     pub feature_a: qdist_mesh_feature,
     pub index_a: u32,
-    /// Where on B.
     pub feature_b: qdist_mesh_feature,
     pub index_b: u32,
 }

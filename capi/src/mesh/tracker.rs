@@ -33,7 +33,6 @@ pub type qdist_mesh_late = Option<unsafe extern "C" fn(user: *mut c_void) -> i32
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_mesh_budget {
-    /// sizeof(qdist_mesh_budget).
     pub struct_size: u32,
     /// QDIST_MESH_DISP (default), QDIST_MESH_SIGMA or QDIST_MESH_OWN. It may change from tick to tick.
     pub metric: qdist_mesh_metric,

@@ -156,7 +156,6 @@ pub(super) fn tolerance(tolerance: f64) -> f64 {
 ///
 /// rank_tolerance: for active primitives, decides what counts as zero: singular values of a Jacobian relative to the largest, and how far a force
 /// may be from what the joints generate. 0: 1e-9 (float: 4e-6).
-/// which: NULL; or after an error that is a contact's, its index is written there.
 ///
 /// Status: ARGUMENT (active is neither 0 nor 1, or count is 0), FRAME (frame), TOLERANCE (rank_tolerance, where a contact has a Jacobian that
 /// counts); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS, CONTACT_FRICTION (friction, mu or mus),

@@ -110,7 +110,7 @@ impl Wrenches for qdist_finger_wrenches_f64 {
 /// limits: NULL: there are none; or the largest torque of each joint, not negative, INFINITY for none, in units of force times that of the
 /// Jacobian's entries. The palm has none to read. model: QDIST_FORCE_MODEL_PASSIVE or QDIST_FORCE_MODEL_ACTIVE. rank_tolerance as for
 /// qdist_primitives. QDIST_ERROR_CAPACITY: more than four contacts; QDIST_ERROR_CONTACT_JACOBIAN: also one of other joints than the first.
-/// which: NULL; or after an error that is a contact's, its index is written there; of QDIST_ERROR_TORQUE_LIMIT that of the joint.
+/// which: of QDIST_ERROR_TORQUE_LIMIT the index of the joint.
 ///
 /// 5 microseconds where no limit counts; a millisecond or more, with 69 KB of stack in double, where there are limits and several contacts (`./x
 /// figures`, `./x stack`).

@@ -11,7 +11,6 @@ use qdist::internal::check_forces;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_force_options_f64 {
-    /// sizeof(qdist_force_options_f64).
     pub struct_size: u32,
     /// The most steps (see `iterations` of qdist_forces); 0: 1000. With a memory twice as many at most.
     pub max_iterations: u32,
@@ -44,7 +43,6 @@ gaps!(qdist_force_memory_f64, count..directions);
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_forces_f64 {
-    /// sizeof(qdist_forces_f64); set it before the call.
     pub struct_size: u32,
     /// What was concluded.
     pub outcome: qdist_force_outcome,

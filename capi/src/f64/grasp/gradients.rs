@@ -9,7 +9,6 @@ use super::*;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_refined_f64 {
-    /// sizeof(qdist_refined_f64); set it before the call.
     pub struct_size: u32,
     /// QDIST_KINK_NONE: d has a gradient. Else why it has none; `upper` and `direction` hold all the same.
     pub kink: qdist_kink,
@@ -48,7 +47,7 @@ gaps!(qdist_contact_gradient_f64);
 /// for active primitives (active: 1; passive: 0), this rank_tolerance. q (NULL: the unit ball) and result are those of the query; a relative
 /// tolerance of 1e-2 is usually enough.
 ///
-/// gradients: room for `count`. which: NULL; or after an error that is a contact's, its index is written there.
+/// gradients: room for `count`.
 ///
 /// Status: ARGUMENT (active is neither 0 nor 1; count is 0, or not that of wrenches; a flag of result), NONFINITE (a number of result), FRAME
 /// (frame), TOLERANCE (rank_tolerance), those of qdist_set_wrenches (wrenches) and of a unit set (q); of a contact, as of qdist_primitives.

@@ -120,10 +120,9 @@ fn like(friction: qdist_friction) -> Friction<f64> {
 /// Pyramids of `count` contacts: their edges, one contact's after the other's, go to `edges`, with room for `capacity` edges of six numbers, and
 /// `pyramids`, with room for `count`, points there.
 ///
-/// QDIST_ERROR_CAPACITY: there is no room for the edges. which: NULL; or after an error that is a contact's, its index is written there. After
-/// QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
+/// After QDIST_ERROR_CONTACT_WRENCH what `edges` contains is unspecified.
 ///
-/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity); of layout: ARGUMENT (kind, sides, or length negative), NONFINITE
+/// Status: ARGUMENT (count is 0), FRAME (frame), CAPACITY (capacity: there is no room for the edges); of layout: ARGUMENT (kind, sides, or length negative), NONFINITE
 /// (length), FRAME (length of QDIST_LAYOUT_GRASPIT); of a contact, which `which` names: CONTACT_POSITION, CONTACT_NORMAL, CONTACT_TANGENTS,
 /// CONTACT_FRICTION, CONTACT_CAP, CONTACT_WRENCH.
 #[unsafe(no_mangle)]

@@ -9,7 +9,6 @@ use super::*;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_closure_f64 {
-    /// sizeof(qdist_closure_f64); set it before the call.
     pub struct_size: u32,
     /// QDIST_CLOSURE_OPEN, QDIST_CLOSURE_CLOSED or QDIST_CLOSURE_UNDECIDED.
     pub verdict: qdist_closure,
@@ -26,7 +25,6 @@ versioned!(qdist_closure_f64);
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct qdist_best_f64 {
-    /// sizeof(qdist_best_f64); set it before the call.
     pub struct_size: u32,
     /// Its place in the list, from 0.
     pub index: u32,
