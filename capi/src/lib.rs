@@ -15,8 +15,9 @@
 //! parameters, and what is behind a function of C is one function away. What does not name a struct of the header is generic, and exists once.
 //!
 //! A pointer is checked where it comes in, and is a reference from there on. So exported functions are safe code, and `unsafe` stands in [`pointer`],
-//! [`callback`] and [`handle`], where a struct of the header is behind a `user` ([`f64::answers`]), or a unit set of the caller answers ([`f64::unit_sets`]), and in a few lines elsewhere, each with the
-//! fact that makes it right. (The compiler's lint `unsafe_code` also refuses names for C, which every chapter has; so a test looks, `tests/core/house.rs`.)
+//! [`callback`] and [`handle`], where a struct of the header is behind a `user` ([`f64::answers`]), where a unit set of the caller answers
+//! ([`f64::unit_sets`]), and in a few lines elsewhere, each with the fact that makes it right. (The compiler's lint `unsafe_code` also refuses names for
+//! C, which every chapter has; so a test looks, `tests/core/house.rs`.)
 //!
 //! Nothing here switches between dimensions, shapes or scalars at run time where that would link much code which a program does not use: nearly
 //! every entry point names all three.
