@@ -63,8 +63,9 @@
  * Frames      Right-handed. A body's pose takes points from its own frame to the world: x -> rotation * x + translation. All
  *             results are in the world frame.
  * Versions    Structs that may grow begin with struct_size. Set it to the sizeof of the struct before the call, of a result, too (a _default function
- *             does it for options): a library of a later version takes those of an earlier header, which are shorter. What they lack takes its default; results are written as far as they go. Numbers of this header never change their
- *             meaning; new ones may be added, so that unknown ones must be expected. */
+ *             does it for options): a library of a later version takes the structs of an earlier header, which are shorter. What they lack takes its
+ *             default; results are written as far as they go. Numbers of this header never change their meaning; new ones may be added, so that
+ *             unknown ones must be expected. */
 
 #ifndef QDIST_H
 #define QDIST_H
