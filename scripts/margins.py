@@ -122,7 +122,7 @@ ellipsoids: axes aside | solver/depth/ellipsoids.rs | let turned = @aside * T::o
 ellipsoids: matrices that stretch | solver/depth/ellipsoids.rs | T::of(2.1) + @stretched * T::count(32)@ + | T::zero()
 ellipsoids: rounding of what is measured | solver/depth/ellipsoids.rs | T::count(32) + @T::count(64) * T::ROUNDOFF@; | T::zero()
 
-half spaces: rounding of heights | solver/depth/half_space/plane.rs | (sum.value(), @T::count(TWOFOLD_ROUNDOFFS) * (T::ROUNDOFF * T::ROUNDOFF * terms + T::TINY)@) | T::zero()
+half spaces: rounding of heights | solver/depth/half_space/plane.rs | (sum.value(), @T::count(TWOFOLD_ROUNDOFFS) * lost@) | T::zero()
 half spaces: rounding of a ball's height | solver/depth/half_space/plane.rs | terms += @ball.abs() * self.length@ | T::zero()
 half spaces: rounding of the depth | solver/depth/half_space/plane.rs | @T::count(N + 8) * T::ROUNDOFF * parts@ | T::zero()
 half spaces: lower, the set's error | solver/depth/half_space/plane.rs | let off = @deepest.error * along@ | T::zero()

@@ -152,7 +152,11 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
         while let Some(index) = self.next_fresh() {
             let Some(facet) = self.facet(index) else { break };
-            let key = query.key(&facet.normal, facet.offset)?;
+            let key = query.key(&facet.normal, facet.offset);
+            let Ok(key) = key else {
+                self.doubt();
+                return key.map(|_| ());
+            };
             if !self.set_key(index, key, key < query.ratio()) {
                 query.skip(key);
             }

@@ -47,11 +47,8 @@ pub(crate) fn race<T: Real, const N: usize>(
             match expanded.as_ref().map(|expanded| expanded.stop) {
                 Ok(Stop::Turn) => {}
                 Ok(Stop::Rounding | Stop::Capacity) => return second(polytope, query, expanded?, &mut rays),
-                // What the rays have shown before still holds.
                 _ => {
-                    if let Some(found) = &rays.found {
-                        query.raise(found.lower, found.reach);
-                    }
+                    rays.keep(query);
                     return expanded.map(Ended::Expansion);
                 }
             }
@@ -114,8 +111,12 @@ fn second<T: Real, const N: usize>(
     rays: &mut RaySearch<T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     query.work.allow(u64::MAX);
-    if polytope.widen(query, expanded.stop, expanded.key)? {
-        return Ok(Ended::Expansion(expanded));
+    match polytope.widen(query, expanded.stop, expanded.key) {
+        Ok(false) => {}
+        widened => {
+            rays.keep(query);
+            return widened.map(|_| Ended::Expansion(expanded));
+        }
     }
     rays.advance(query)?;
     match told(polytope, query, rays)? {

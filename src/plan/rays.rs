@@ -100,7 +100,7 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         if !(query.size() > T::zero()) {
             return Ok(true); // A is the origin, as far as it was asked: no size for the first corners.
         }
-        let ends = self.shoot_passes(query)?;
+        let ends = self.shoot_passes(query).inspect_err(|_| self.keep(query))?;
         // A limit that was met while the cost of the margin was looked for is one, too.
         if let Some(found) = self.found.as_mut().filter(|found| found.stop == Stop::Rounding) {
             found.stop = query.stopped().unwrap_or(Stop::Rounding);
@@ -108,29 +108,31 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
         Ok(ends)
     }
 
+    /// What has been shown holds, whatever else ends the query.
+    pub fn keep(&self, query: &mut Query<'_, T, N>) {
+        if let Some(found) = &self.found {
+            query.raise(found.lower, found.reach);
+        }
+    }
+
     /// Pass after pass.
     fn shoot_passes(&mut self, query: &mut Query<'_, T, N>) -> Result<bool, Failure> {
         loop {
-            let shot = match self.shoot_pass(query) {
-                Ok(Shot::Again) => continue,
-                Ok(Shot::Stopped(Stop::Turn)) => return Ok(false),
-                other => other,
-            };
-            let ended = match shot {
-                Ok(Shot::Hit) => {
+            let ended = match self.shoot_pass(query)? {
+                Shot::Again => continue,
+                Shot::Stopped(Stop::Turn) => return Ok(false),
+                Shot::Hit => {
                     if self.at_edge && query.stopped().is_none() {
                         query.spend(); // No surface around the origin proves more.
                     }
                     return Ok(true);
                 }
-                Ok(shot) => {
+                shot => {
                     if matches!(shot, Shot::Left) {
                         query.spend();
                     }
                     query.exhausted().unwrap_or(Stop::Rounding)
                 }
-                Err(failure) if self.found.is_none() => return Err(failure),
-                Err(Failure(code)) => Stop::Failed(code),
             };
             // What an earlier pass has shown still holds.
             self.found.iter_mut().for_each(|earlier| earlier.stop = ended);

@@ -186,6 +186,12 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
         None
     }
 
+    /// A facet has got no key: the surface proves nothing any more.
+    #[cold]
+    pub fn doubt(&mut self) {
+        self.sound = false;
+    }
+
     /// Puts the visible facets on the free list and the fresh ones into service.
     fn recycle(&mut self, head: Index) -> Option<()> {
         let mut at = head;

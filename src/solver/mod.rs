@@ -343,8 +343,19 @@ impl<T: Real, const N: usize> Solver<'_, T, N> {
         cloud.nearest(&query.first_direction()).filter(|stored| before.is_none_or(|b| !(b.distance < stored.distance)))
     }
 
+    /// The answer after a failure: what the surface proves that is there, else the stored vertices.
+    #[cold]
+    #[inline(never)]
     fn give_up(&mut self, query: &mut Query<'_, T, N>, failure: Failure) -> Answer<T, N> {
-        self.lower_by_vertices(query, Stop::Failed(failure.0), None)
+        let stop = Stop::Failed(failure.0);
+        let key = self.polytope.lowest().map(|facet| facet.key.at_most(query.skipped()));
+        match key.and_then(|key| self.polytope.lower(query, key)) {
+            Some(lower) if query.upper() >= T::zero() => {
+                let witness = self.polytope.touching_simplex(query, None);
+                self.report(query, stop, lower, witness)
+            }
+            _ => self.lower_by_vertices(query, stop, None),
+        }
     }
 }
 

@@ -10,7 +10,8 @@ use common::exact::body_value;
 use common::memory::{Memory, Seen, broken_promise};
 use nalgebra::SMatrix;
 use qdist::support::{
-    BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Margin, Points, Rigid, ShapeError, Sphere, Sum, Support,
+    BoxShape, Capsule, Ellipsoid, Failure, HalfSpace, Join, Margin, Points, Rigid, Scaled, ShapeError, Sphere, Sum,
+    Support,
 };
 use qdist::{Body, BodyError, Depth, NOT_FINITE, Options, Outcome, Real, UNBOUNDED, Vector};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -496,4 +497,54 @@ fn shallow_contact_with_the_ground_in_f32() {
             }
         }
     }
+}
+
+/// Radii that are sums or products of numbers, and rounded: they touch the ground where the rounded number does, which is not where they do.
+#[test]
+fn balls_whose_radius_is_rounded() {
+    let mut dice = Dice::new(47);
+    let ground = HalfSpace::<f32, 3>::new(Vector::from([0.0, 0.0, 1.0]), 0.0).unwrap();
+    let number = |dice: &mut Dice| exact::<f32>(dice.range(0.1, 1.0));
+    for index in 0..400 {
+        let [r, s] = if index == 0 { [0.1f32, 0.2].map(f64::from) } else { [number(&mut dice), number(&mut dice)] };
+        let ball = Sphere::<f32, 3>::new(r as f32).unwrap();
+        let other = Sphere::<f32, 3>::new(s as f32).unwrap();
+        let (shape, radius): (Box<dyn Support<f32, 3> + Sync>, Dd) = match index % 3 {
+            0 => (Box::new(Margin::new(ball, s as f32).unwrap()), Dd::from(r) + Dd::from(s)),
+            1 => (Box::new(Sum::new(ball, other)), Dd::from(r) + Dd::from(s)),
+            _ => (Box::new(Scaled::new(ball, s as f32).unwrap()), Dd::product(r, s)),
+        };
+        let up = exact::<f32>(radius.to_f64());
+        let r = ask(&Body::at(&*shape, vector([0.0, 0.0, up])), &Body::at(&ground, Vector::zeros()));
+        let depth = radius - Dd::from(up);
+        let (lower, upper) = (Dd::from(f64::from(r.lower)), Dd::from(f64::from(r.upper)));
+        assert!(lower <= depth && depth <= upper, "{index} {depth:?} {r:?}");
+        assert!(r.upper - r.lower <= 1e-6, "{r:?}");
+    }
+}
+
+/// An ellipsoid in a margin, turned by a matrix that is a rotation only roughly: what is left of the radius when the rolling ball goes into the points is rounded.
+#[test]
+fn a_margin_around_a_rough_ellipsoid() {
+    let ellipsoid = Ellipsoid::new(Vector::from([1e-3; 3])).unwrap();
+    let shape = Margin::new(ellipsoid, 1000.0).unwrap();
+    let ground = HalfSpace::<f64, 3>::new(Vector::from([0.0, 0.0, 1.0]), 0.0).unwrap();
+    let mut rows = Pose::<3>::identity().rotation;
+    rows[0][1] = 1e-6;
+    let body = Body::new(&shape, matrix(rows), Vector::from([0.0, 0.0, shape.radius()])).unwrap();
+    let options = Options { absolute: 1e-15, ..Options::default() };
+    let r = depth(&body, &Body::at(&ground, Vector::zeros()), &options, |memory, a, b, options| {
+        memory.solver::<f64, 3>().depth(a, b, options)
+    });
+    let depth = Dd::from(1000.0) + Dd::from(1e-3) - Dd::from(shape.radius());
+    assert!(Dd::from(r.lower) <= depth && depth <= Dd::from(r.upper), "{depth:?} {r:?}");
+}
+
+/// A normal whose small coordinates are lost when it is scaled, far from the origin.
+#[test]
+fn a_normal_of_very_different_coordinates() {
+    let point = Points::<f32, 3>::new(&[[0.0; 3]]).unwrap();
+    let ground = HalfSpace::<f32, 3>::new(Vector::from([1e15, 0.0, 1e-31]), 0.0).unwrap();
+    let r = ask(&Body::at(&point, Vector::from([0.0, 0.0, 1e31])), &Body::at(&ground, Vector::zeros()));
+    assert!(r.lower <= -9.9e-16 && r.upper >= -1.01e-15, "{r:?}");
 }

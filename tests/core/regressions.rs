@@ -9,7 +9,7 @@ use common::dice::Dice;
 use common::exact::pair_value;
 use common::memory::{Memory, Seen, brisk, broken_promise};
 use nalgebra::SMatrix;
-use qdist::qset::{Ball, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
+use qdist::qset::{Ball, CrossPolytope, Segment, UnitBox, UnitEllipsoid, UnitSet, Vertices};
 use qdist::support::{BoxShape, Ellipsoid, Failure, Linear, Margin, Points, Rigid, Sphere, Sum, Support};
 use qdist::{Options, Outcome, Plan, Real, Vector};
 use std::cell::Cell;
@@ -355,14 +355,14 @@ fn a_limit_while_rays_run_along_a_flat_set() {
     }
 }
 
-/// An ellipsoid that answers so many times.
-struct Answers {
-    set: Ellipsoid<f64, 6>,
+/// A set that answers so many times.
+struct Answers<S> {
+    set: S,
     left: Cell<u32>,
 }
 
-impl Support<f64, 6> for Answers {
-    fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
+impl<S: Support<f64, N>, const N: usize> Support<f64, N> for Answers<S> {
+    fn support(&self, u: &Vector<f64, N>) -> Result<Vector<f64, N>, Failure> {
         let left = self.left.get().checked_sub(1).ok_or(Failure(7))?;
         self.left.set(left);
         self.set.support(u)
@@ -375,25 +375,40 @@ impl Support<f64, 6> for Answers {
     }
 }
 
-/// When the support function failed during an expansion that took turns with rays, what a pass of the rays had shown was lost (0 for 0.44).
+/// The plan that ends the query when the set always answers. Until then each answer more costs nothing of the lower bound.
+fn failing_later_and_later<const N: usize>(
+    set: impl Support<f64, N> + Copy,
+    q: &dyn UnitSet<f64, N>,
+    relative: f64,
+) -> Plan {
+    let options = Options { max_iterations: Some(100_000), relative, ..Options::default() };
+    let mut best = f64::MIN;
+    for calls in 1.. {
+        let set = Answers { set, left: Cell::new(calls) };
+        let mut memory = Memory::new::<f64, N>(500, 4000);
+        let answer = memory.solver::<f64, N>().solve(&set, q, &options);
+        assert!(answer.lower >= best - 1e-12, "{calls}: {best} before, {:?}", Seen::from(&answer));
+        best = best.max(answer.lower);
+        if answer.outcome != Outcome::SupportFailed {
+            return answer.plan;
+        }
+    }
+    unreachable!()
+}
+
+/// When the support function failed during an expansion, its lower bound was lost, and that of the rays that took turns with it (0 for 0.44).
 #[test]
-fn a_failure_does_not_cost_what_rays_have_shown() {
+fn a_failure_does_not_cost_what_was_shown() {
     let mut dice = Dice::new(41);
     let points: Vec<[f64; 6]> = (0..12).map(|_| dice.direction()).collect();
     let q = Vertices::new(&points).unwrap();
-    let set = Ellipsoid::new(Vector::from([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])).unwrap();
-    let options = Options { max_iterations: Some(100_000), relative: 1e-3, ..Options::default() };
-    let (mut best, mut outcome) = (f64::MIN, Outcome::SupportFailed);
-    for calls in 1..1000 {
-        let set = Answers { set, left: Cell::new(calls) };
-        let mut memory = Memory::new::<f64, 6>(500, 4000);
-        let answer = memory.solver::<f64, 6>().solve(&set, &q, &options);
-        assert!(answer.lower >= best - 1e-12, "{calls}: {best} before, {:?}", Seen::from(&answer));
-        (best, outcome) = (best.max(answer.lower), answer.outcome);
-        if outcome != Outcome::SupportFailed {
-            assert_eq!(answer.plan, Plan::Rays);
-            break;
-        }
-    }
-    assert_eq!(outcome, Outcome::Converged);
+    let round = Ellipsoid::new(Vector::from([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])).unwrap();
+    assert_eq!(failing_later_and_later(round, &q, 1e-3), Plan::Rays);
+    let set = BoxShape::new(Vector::from([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])).unwrap();
+    failing_later_and_later(set, &q, 1e-3);
+    let set = Ellipsoid::new(Vector::from([1.0, 1.3])).unwrap();
+    failing_later_and_later(set, &CrossPolytope::new(Vector::from([1.0, 0.7])).unwrap(), 1e-15);
+    let set = Ellipsoid::new(Vector::from([1.0, 1.3, 2.0])).unwrap();
+    assert_eq!(failing_later_and_later(set, &Ball::unit(), 1e-9), Plan::Expansion);
+    failing_later_and_later(set, &UnitBox::new(Vector::from([1.0, 0.7, 0.5])).unwrap(), 1e-9);
 }

@@ -122,7 +122,7 @@ impl<'a, T: Real, const N: usize> Body<'a, T, N> {
     fn ball_error(&self) -> T {
         let rolling = self.shape.rolling_radius();
         if self.inflation > T::zero() {
-            T::count(8) * T::ROUNDOFF * self.inflation
+            (T::count(8) * self.inflation + self.ball) * T::ROUNDOFF
         } else if rolling > T::zero() && !is_exact(&self.rotation) {
             (skew(&self.rotation) + T::count(4) * T::ROUNDOFF) * T::of(N as f64 * 0.505) * rolling
         } else {

@@ -63,6 +63,11 @@ pub(crate) fn total<T: Real>(a: T, b: T) -> T {
     if a >= T::zero() && b >= T::zero() { a + b } else { -T::HUGE }
 }
 
+/// What a sum of two radii is off, where it is rounded.
+fn rounding_of_radii<T: Real>(a: T, b: T) -> T {
+    if a > T::zero() && b > T::zero() { (a + b) * T::ROUNDOFF } else { T::zero() }
+}
+
 /// The extent of a combination: `known` if the parts are known.
 #[inline(always)]
 fn if_known<T: Real>(parts: &[T], known: T) -> T {

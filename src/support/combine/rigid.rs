@@ -143,7 +143,9 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Rigid<S, T, N>
     }
     fn error(&self) -> T {
         let inner = self.shape.extent();
+        // (And the radius that is left when a ball goes into the points is rounded.)
         let reach = if inner > T::zero() { inner } else { self.shift } + self.shift + self.inflation();
+        let reach = if self.inflation() > T::zero() { reach + self.radius() } else { reach };
         if !self.rounds {
             return above(self.shape.error() + T::count(2) * T::ROUNDOFF * reach, N);
         }

@@ -1,6 +1,6 @@
 //! Sets that are scaled, or grown by a margin.
 
-use super::{pair_error, pair_errors, total};
+use super::{pair_error, pair_errors, rounding_of_radii, total};
 use crate::math::Vector;
 use crate::scalar::Real;
 use crate::support::range::{above, check_sizes};
@@ -9,7 +9,7 @@ use crate::support::{Failure, Support, Symmetry};
 
 /// A set scaled about the origin by a factor >= 0, ball term included.
 ///
-/// `error`: `factor e`, and one rounding of each coordinate, `u factor E`; an unknown E is covered by the solver's
+/// `error`: `factor e`, one rounding of each coordinate, `u factor E`, and one of the radius; an unknown E is covered by the solver's
 /// margin, since that rounding is at most u |p|.
 ///
 /// ```
@@ -65,18 +65,18 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Scaled<S, T> {
         self.shape.contains_origin()
     }
     fn error(&self) -> T {
-        self.factor * pair_error(self.shape.error(), self.shape.extent())
+        self.factor * pair_error(self.shape.error(), self.shape.extent() + self.shape.radius())
     }
     fn errors(&self) -> Vector<T, N> {
-        pair_errors(self.shape.errors(), self.shape.extents()) * self.factor
+        pair_errors(self.shape.errors(), self.shape.extents().add_scalar(self.shape.radius())) * self.factor
     }
     fn extents(&self) -> Vector<T, N> {
         self.shape.extents().map(|x| above(x * self.factor, 0))
     }
 }
 
-/// A set grown by a ball of radius `margin` >= 0: only the ball term changes, so the points and their error are those
-/// of the set.
+/// A set grown by a ball of radius `margin` >= 0: only the ball term changes, so the points are those of the set, and so is their error, but for the rounding of the
+/// sum where the set has a ball term of its own.
 ///
 /// ```
 /// use qdist::{Vector, support::{BoxShape, Margin, Support}};
@@ -140,10 +140,10 @@ impl<S: Support<T, N>, T: Real, const N: usize> Support<T, N> for Margin<S, T> {
         self.shape.contains_origin()
     }
     fn error(&self) -> T {
-        self.shape.error()
+        self.shape.error() + rounding_of_radii(self.shape.radius(), self.margin)
     }
     fn errors(&self) -> Vector<T, N> {
-        self.shape.errors()
+        self.shape.errors().add_scalar(rounding_of_radii(self.shape.radius(), self.margin))
     }
     fn extents(&self) -> Vector<T, N> {
         self.shape.extents()

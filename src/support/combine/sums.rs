@@ -1,13 +1,13 @@
 //! Minkowski sums and differences.
 
-use super::{all_if_known, if_known, pair_error, pair_errors, total};
+use super::{all_if_known, if_known, pair_error, pair_errors, rounding_of_radii, total};
 use crate::math::Vector;
 use crate::scalar::Real;
 use crate::support::{Failure, Support};
 
 /// The Minkowski sum `{x + y : x in a, y in b}`. Ball terms add up.
 ///
-/// `error`: the sum of the errors, and one rounding of the sum of the points, `u (E_a + E_b)`; an unknown extent is
+/// `error`: the sum of the errors, one rounding of the sum of the points, `u (E_a + E_b)`, and one of that of two ball terms; an unknown extent is
 /// covered by the solver's margin, since that rounding is at most u |p|.
 ///
 /// ```
@@ -63,10 +63,12 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         self.a.contains_origin() && self.b.contains_origin()
     }
     fn error(&self) -> T {
-        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())
+        let radii = rounding_of_radii(self.a.radius(), self.b.radius());
+        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent()) + radii
     }
     fn errors(&self) -> Vector<T, N> {
-        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
+        let radii = rounding_of_radii(self.a.radius(), self.b.radius());
+        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents()).add_scalar(radii)
     }
     fn extents(&self) -> Vector<T, N> {
         all_if_known(&[self.a.extent(), self.b.extent()], self.a.extents() + self.b.extents())
@@ -139,10 +141,12 @@ impl<T: Real, const N: usize, A: Support<T, N>, B: Support<T, N>> Support<T, N> 
         self.a.contains_origin() && self.b.contains_origin()
     }
     fn error(&self) -> T {
-        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent())
+        let radii = rounding_of_radii(self.a.radius(), self.b.radius());
+        pair_error(total(self.a.error(), self.b.error()), self.a.extent() + self.b.extent()) + radii
     }
     fn errors(&self) -> Vector<T, N> {
-        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents())
+        let radii = rounding_of_radii(self.a.radius(), self.b.radius());
+        pair_errors(self.a.errors() + self.b.errors(), self.a.extents() + self.b.extents()).add_scalar(radii)
     }
     fn extents(&self) -> Vector<T, N> {
         all_if_known(&[self.a.extent(), self.b.extent()], self.a.extents() + self.b.extents())

@@ -36,7 +36,7 @@ impl<T: Real, const N: usize> Deepest<T, N> {
         let swell = direction * (a.inflation / norm(&direction));
         let astray = norm(&v.low) * T::of(1.01) + lost;
         let (core, swell) = (TwoWords::from(point), TwoWords::from(swell));
-        Ok(Deepest { core, swell, balls: [a.ball, T::zero()], error: anchor.error, astray })
+        Ok(Deepest { core, swell, balls: [a.shape.radius(), -a.inflation], error: anchor.error, astray })
     }
 
     /// The same in two words; `None` where the shape does not tell. A ball that rolls in the shape is its image under the body's matrix, as the shape is: it is in

@@ -25,8 +25,8 @@ pub(super) struct Plane<'b, 'a, T: Real, const N: usize> {
     slip: T,
 }
 
-/// A bound of what sums in twice the precision leave, in u^2 of the terms' sizes: up to eight in each coordinate of a point and three in that
-/// of a normal, products of the parts, and nine in the end: 64 + 9 + 16 + 81 by the bound n^2 u^2 of Ogita, Rump & Oishi,
+/// A bound of what sums in twice the precision leave, in u^2 of the terms' sizes: in space up to eight in each coordinate of a point (and six of low words, which are u of
+/// that) and three in that of a normal, products of the parts, and eleven in the end: 64 + 9 + 16 + 121 by the bound n^2 u^2 of Ogita, Rump & Oishi,
 /// 2^5 of |w|, and room for second order and low words. Four times that, since other rounding modes double u.
 const TWOFOLD_ROUNDOFFS: usize = 1024;
 
@@ -58,7 +58,9 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
             sum.add(ball * self.slip);
             terms += ball.abs() * self.length;
         }
-        (sum.value(), T::count(TWOFOLD_ROUNDOFFS) * (T::ROUNDOFF * T::ROUNDOFF * terms + T::TINY))
+        // (Products with a normal's smallest coordinates may be subnormal, and these may have been lost.)
+        let lost = T::ROUNDOFF * T::ROUNDOFF * terms + T::TINY + T::TINY * sizes.sum();
+        (sum.value(), T::count(TWOFOLD_ROUNDOFFS) * lost)
     }
 
     /// Half the roundings of a quotient by |w|, a sum, and of a normal that is not quite a unit vector: in roundoffs of both.
@@ -78,8 +80,14 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
         if is_enough(&found.bracket) {
             return Ok(found);
         }
-        let again = Anchor { calls: found.calls, ..anchor };
-        Ok(Deepest::in_two_words(a, &v, lost, &anchor).map_or(found, |deepest| self.measure(a, &deepest, &again)))
+        let Some(deepest) = Deepest::in_two_words(a, &v, lost, &anchor) else { return Ok(found) };
+        let finer = self.measure(a, &deepest, &Anchor { calls: found.calls, ..anchor });
+        // (One word may be exact.)
+        let bracket = Bracket {
+            lower: finer.bracket.lower.at_least(found.bracket.lower),
+            upper: finer.bracket.upper.at_most(found.bracket.upper),
+        };
+        Ok(Found { bracket, ..finer })
     }
 
     /// The depth, where this is what reaches farthest into the half space.
