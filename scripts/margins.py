@@ -106,7 +106,8 @@ pair: body of unknown extent | solver/depth/body.rs | .at_least(@T::count(16 * N
 pair: ball under a matrix that stretches | solver/depth/body.rs | if @skew > T::count(SKEW_ROUNDOFFS) * T::ROUNDOFF@ | false
 pair: ball that is an image | solver/depth/body.rs | anchor.error += @self.ball_error()@; | T::zero()
 pair: by direction, ball that is an image | solver/depth/body.rs | errors.add_scalar(@self.ball_error()@) | T::zero()
-pair: ball in the points, rounding | solver/depth/body.rs | @T::count(8) * T::ROUNDOFF * self.inflation@ | T::zero()
+pair: ball in the points, rounding | solver/depth/body.rs | (@T::count(8) * self.inflation@ + self.ball) * T::ROUNDOFF | T::zero()
+pair: ball beside the points, rounding | solver/depth/body.rs | + @self.ball@) * T::ROUNDOFF | T::zero()
 pair: ball that is an image, rounding of what is measured | solver/depth/body.rs | (&self.rotation) + @T::count(4) * T::ROUNDOFF@) | T::zero()
 
 meridian: axes aside | solver/depth/axis.rs | let moved = @axis.aside@ + | T::zero()
