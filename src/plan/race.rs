@@ -3,8 +3,8 @@
 //! A ray costs about the same for each vertex of Q, whatever A is like: some steps, most of them ended early by what the rays before have shown.
 //! Expansion looks at all vertices for each facet, and how many facets it makes depends on A: ten inside an octahedron, thousands inside a smooth
 //! set of dimension 6; nobody knows before it is done. So expansion begins, and may do one and a half times the work that the rays need at least.
-//! Then they take turns: rays so much at a time, and expansion an eighth of it. Both stop where they are and go on from there, and each knows the
-//! other's upper bounds.
+//! Then they take turns: rays so much at a time, and expansion a sixteenth of it, then twice that, and in the end as much, since rays that take that long are no better a
+//! guess. Both stop where they are and go on from there, and each knows the other's upper bounds.
 //!
 //! No schedule that does not know how much work the plans need keeps below twice the better one always. This one does nearly always, as long as a
 //! support point costs about what it does for a small A.
@@ -21,10 +21,10 @@ use crate::query::{Query, Work};
 use crate::scalar::Real;
 use crate::support::Failure;
 
-/// Shares of what rays need at least: how many of them expansion may do at first, and how many expansion and rays may do in a turn.
-const OF: u64 = 8;
-const FIRST: u64 = 12;
-const TURNS: [u64; 2] = [1, 8];
+/// Shares of what rays need at least: how many of them expansion may do at first, and how many rays may do in a turn, and expansion in the end.
+const OF: u64 = 16;
+const FIRST: u64 = 24;
+const TURN: u64 = 16;
 
 /// Which plan has answered.
 pub(crate) enum Ended<T, const N: usize> {
@@ -39,7 +39,7 @@ pub(crate) fn race<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
 ) -> Result<Ended<T, N>, Failure> {
     let mut rays = RaySearch::new(query);
-    let mut turns = Turns { share: (cost(&rays, query) / OF).max(1), surplus: [0; 2], expands: true };
+    let mut turns = Turns { share: (cost(&rays, query) / OF).max(1), surplus: [0; 2], expands: true, expansion: 1 };
     query.work.allow(turns.share.saturating_mul(FIRST));
     loop {
         if turns.expands {
@@ -73,6 +73,8 @@ struct Turns {
     share: u64,
     surplus: [u64; 2],
     expands: bool,
+    /// How many shares expansion may do in its next turn.
+    expansion: u64,
 }
 
 impl Turns {
@@ -82,9 +84,13 @@ impl Turns {
         *(if self.expands { expansion } else { rays }) = surplus;
         loop {
             self.expands = !self.expands;
+            let shares = if self.expands { self.expansion } else { TURN };
+            if self.expands {
+                self.expansion = TURN.min(self.expansion * 2);
+            }
             let [expansion, rays] = &mut self.surplus;
-            let (surplus, turns) = if self.expands { (expansion, TURNS[0]) } else { (rays, TURNS[1]) };
-            let turn = self.share.saturating_mul(turns);
+            let surplus = if self.expands { expansion } else { rays };
+            let turn = self.share.saturating_mul(shares);
             if *surplus < turn {
                 return turn - core::mem::take(surplus);
             }
