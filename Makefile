@@ -138,8 +138,8 @@ OUT ?= out/compare
 compare: lib
 	$(need)
 	@echo "building compare"
-	@$(CXX) -std=c++17 -O2 -Wall -Wextra -Iinclude $(peer_includes) ffi-tests/compare.cpp ffi-tests/peers.cpp ffi-tests/cases.cpp \
-	    $(lib) -lfcl -lccd -lqhullcpp -lqhull_r -o $(out)/compare
+	@$(CXX) -std=c++17 -O2 -Wall -Wextra -Iinclude $(peer_includes) ffi-tests/compare.cpp ffi-tests/qdist_query.cpp ffi-tests/peers.cpp \
+	    ffi-tests/cases.cpp $(lib) -lfcl -lccd -lqhullcpp -lqhull_r -o $(out)/compare
 	@mkdir -p $(OUT)
 	@echo "comparing; results go to $(OUT)"
 	@$(out)/compare $(OUT) $(CASES)

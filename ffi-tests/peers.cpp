@@ -188,12 +188,13 @@ using CcdPenetration = int (*)(const void *, const void *, const ccd_t *, ccd_re
 template <CcdPenetration penetration>
 class LibccdQuery final : public Query {
 public:
-    explicit LibccdQuery(const Case &c) {
+    LibccdQuery(const Case &c, double tolerance) {
         // Defaults of CCD_INIT in libccd 2.1: first_dir = ccdFirstDirDefault, epa_tolerance = mpr_tolerance = 1e-4,
         // dist_tolerance = 1e-6 (not used by these two functions). max_iterations would be "without end"; 100 is what
         // all the examples in its documentation set.
         CCD_INIT(&ccd_);
         ccd_.max_iterations = 100;
+        if (tolerance > 0) ccd_.epa_tolerance = ccd_.mpr_tolerance = tolerance;
         ccd_.support1 = prepare(a_, c.a);
         ccd_.support2 = prepare(b_, c.b);
         ccd_.center1 = ccd_centre;
@@ -264,10 +265,11 @@ class FclCollide final : public FclQuery {
 public:
     // Defaults but for the contacts: one contact, gjk_tolerance 1e-6. With GST_LIBCCD this is libccd's MPR, except for
     // box-box and pairs with a sphere, which have their own code.
-    explicit FclCollide(const Case &c) : FclQuery(c) {
+    FclCollide(const Case &c, double tolerance) : FclQuery(c) {
         request_.num_max_contacts = 1;
         request_.enable_contact = true;
         request_.gjk_solver_type = fcl::GST_LIBCCD;
+        if (tolerance > 0) request_.gjk_tolerance = tolerance;
     }
 
     void run(Answer &answer) override {
@@ -287,10 +289,10 @@ private:
 
 class FclSigned final : public FclQuery {
 public:
-    explicit FclSigned(const Case &c) : FclQuery(c), rounding_(1e-12 * c.size) {
+    FclSigned(const Case &c, double tolerance) : FclQuery(c), rounding_(1e-12 * c.size) {
         request_.enable_nearest_points = true;  // the normal comes from them
         request_.enable_signed_distance = true;
-        request_.distance_tolerance = 1e-6;  // FCL's default
+        request_.distance_tolerance = tolerance > 0 ? tolerance : 1e-6;  // FCL's default
         request_.gjk_solver_type = fcl::GST_LIBCCD;
     }
 
@@ -313,7 +315,11 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Query> make_libccd_epa(const Case &c) { return std::make_unique<LibccdQuery<ccdGJKPenetration>>(c); }
-std::unique_ptr<Query> make_libccd_mpr(const Case &c) { return std::make_unique<LibccdQuery<ccdMPRPenetration>>(c); }
-std::unique_ptr<Query> make_fcl_libccd(const Case &c) { return std::make_unique<FclCollide>(c); }
-std::unique_ptr<Query> make_fcl_signed(const Case &c) { return std::make_unique<FclSigned>(c); }
+std::unique_ptr<Query> make_libccd_epa(const Case &c, double tolerance) {
+    return std::make_unique<LibccdQuery<ccdGJKPenetration>>(c, tolerance);
+}
+std::unique_ptr<Query> make_libccd_mpr(const Case &c, double tolerance) {
+    return std::make_unique<LibccdQuery<ccdMPRPenetration>>(c, tolerance);
+}
+std::unique_ptr<Query> make_fcl_libccd(const Case &c, double tolerance) { return std::make_unique<FclCollide>(c, tolerance); }
+std::unique_ptr<Query> make_fcl_signed(const Case &c, double tolerance) { return std::make_unique<FclSigned>(c, tolerance); }

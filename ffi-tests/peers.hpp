@@ -1,4 +1,4 @@
-// One interface for every solver that `compare` measures, and the peers (libccd, FCL) behind it.
+// One interface for every solver that is measured, and qdist and peers (libccd, FCL) behind it.
 #pragma once
 
 #include <cmath>
@@ -25,9 +25,15 @@ public:
     virtual void run(Answer &answer) = 0;
 };
 
+// A `tolerance` of 0 is the solver's default, or the author's advice where there is none. Any other is given to the setting that decides how near the answer
+// is to be, whatever that is relative to.
+
+// qdist_depth3; the tolerance is relative to the depth, and by default also 1e-12 (float: 1e-5) of the case's size.
+std::unique_ptr<Query> make_qdist_f64(const Case &c, double tolerance);
+std::unique_ptr<Query> make_qdist_f32(const Case &c, double tolerance);
 // ccdGJKPenetration and ccdMPRPenetration; depth of overlapping pairs only.
-std::unique_ptr<Query> make_libccd_epa(const Case &c);
-std::unique_ptr<Query> make_libccd_mpr(const Case &c);
+std::unique_ptr<Query> make_libccd_epa(const Case &c, double tolerance);
+std::unique_ptr<Query> make_libccd_mpr(const Case &c, double tolerance);
 // fcl::collide with contacts (overlap only), and fcl::distance with signed distance, both with FCL's libccd solver.
-std::unique_ptr<Query> make_fcl_libccd(const Case &c);
-std::unique_ptr<Query> make_fcl_signed(const Case &c);
+std::unique_ptr<Query> make_fcl_libccd(const Case &c, double tolerance);
+std::unique_ptr<Query> make_fcl_signed(const Case &c, double tolerance);

@@ -1,0 +1,35 @@
+"""The report: measures, draws, and writes the page. See README.md."""
+
+import argparse
+import importlib
+import sys
+import time
+from pathlib import Path
+
+from report import page
+from report.job import Job
+
+PARTS = ["depth"]
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="report", description=__doc__)
+    parser.add_argument("out", type=Path, help="the folder that it is written to")
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller runs")
+    parser.add_argument("--part", choices=PARTS, action="append", help="this part alone (may be said again)")
+    parser.add_argument("--data-only", action="store_true", help="no pictures and no page")
+    arguments = parser.parse_args()
+    begin = time.monotonic()
+    for name in arguments.part or PARTS:
+        job = Job(arguments.out, name, arguments.quick)
+        part = importlib.import_module(f"report.parts.{name.replace('-', '_')}")
+        part.measure(job)
+        if not arguments.data_only:
+            job.write_text("part.md", part.tell(job))
+    if not arguments.data_only:
+        page.write(arguments.out, PARTS, arguments.quick)
+        print(f"{arguments.out / 'report.html'} ({time.monotonic() - begin:.0f} s)", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

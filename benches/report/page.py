@@ -1,0 +1,93 @@
+"""Puts the parts together: report.md with its pictures beside it, and report.html, one file with all in it."""
+
+import base64
+import html
+import re
+from pathlib import Path
+
+import markdown
+
+from report import machine, style
+
+HEAD = """# qdist: the report
+
+*How deep is this point, body or grasp inside that set, and how sure are we?* Every answer of qdist is a bracket: the truth is between its ends. This page shows what
+that costs, beside the libraries that people know, and where it breaks or loses. Every number on it was measured by one command, `./x report`; the tables behind the
+pictures are CSV files beside it.
+"""
+
+PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>qdist: the report</title>
+<style>
+:root {{ color-scheme: light; }}
+body {{ font: 16px/1.55 system-ui, sans-serif; color: #1b1f24; background: #fff; max-width: 62rem; margin: 0 auto; padding: 1rem 1.2rem 4rem; }}
+h1, h2, h3 {{ line-height: 1.25; margin: 2.2em 0 .6em; }}
+h1 {{ margin-top: 1em; }}
+h2 {{ border-top: 1px solid #d0d7de; padding-top: 1em; }}
+figure {{ margin: 1.2em 0; }}
+figure svg, figure img {{ max-width: 100%; height: auto; }}
+figure, .wide {{ overflow-x: auto; }}
+table {{ border-collapse: collapse; font-size: .92em; font-variant-numeric: tabular-nums; }}
+th, td {{ padding: .25em .7em; border-bottom: 1px solid #d8dee4; vertical-align: top; }}
+code, pre {{ background: #f3f5f7; border-radius: 4px; font-size: .92em; }}
+code {{ padding: .1em .3em; }}
+pre {{ padding: .7em 1em; overflow-x: auto; }}
+pre code {{ padding: 0; }}
+nav ul {{ columns: 2; padding-left: 1.2em; }}
+@media (max-width: 40rem) {{ nav ul {{ columns: 1; }} body {{ font-size: 15px; }} }}
+</style>
+</head>
+<body>
+{body}
+</body>
+</html>
+"""
+
+
+def write(out, parts, quick):
+    out = Path(out)
+    told = [(out / part / "part.md") for part in parts]
+    texts = [file.read_text() for file in told if file.exists()]
+    note = "\n*This is the quick one: few and small runs. Its figures are rough.*\n" if quick else ""
+    heads = [re.search(r"^## (.*)$", text, re.M).group(1) for text in texts]
+    contents = "\n".join(f"* [{head}](#{anchor(head)})" for head in heads)
+    where = style.table(["", "measured with"], machine.rows(), ["---", "---"])
+    text = "\n".join([HEAD + note, contents, "", *texts, "## Where this was measured\n", where])
+    (out / "report.md").write_text(text)
+    (out / "report.html").write_text(PAGE.format(body=inlined(out, text)))
+
+
+def anchor(head):
+    """The anchor that Markdown readers give a heading."""
+    return re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-")
+
+
+def inlined(out, text):
+    """The page's body: Markdown as HTML, with the pictures in it."""
+    slug = lambda value, _: anchor(value)
+    body = markdown.markdown(text, extensions=["tables", "fenced_code", "toc"], extension_configs={"toc": {"slugify": slug}})
+    body = re.sub(r'<p><img alt="([^"]*)" src="([^"]*)" ?/></p>', lambda match: figure(out, *match.groups()), body)
+    return body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
+
+
+def figure(out, what, file):
+    path = out / file
+    what = html.escape(html.unescape(what), quote=True)
+    if path.suffix == ".svg":
+        svg = path.read_text()
+        svg = svg[svg.index("<svg") :].replace("<svg", f'<svg role="img" aria-label="{what}"', 1)
+        return f"<figure>{own_names(svg, file)}</figure>"
+    data = base64.b64encode(path.read_bytes()).decode()
+    return f'<figure><img alt="{what}" src="data:image/{path.suffix[1:]};base64,{data}"></figure>'
+
+
+def own_names(svg, file):
+    """Pictures of one page must not share the names of their elements."""
+    prefix = re.sub(r"\W", "-", file) + "-"
+    svg = re.sub(r'\bid="([^"]*)"', rf'id="{prefix}\1"', svg)
+    svg = re.sub(r'href="#([^"]*)"', rf'href="#{prefix}\1"', svg)
+    return re.sub(r"url\(#([^)]*)\)", rf"url(#{prefix}\1)", svg)

@@ -1,0 +1,57 @@
+"""How pictures look."""
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+
+# Okabe and Ito's colours, which colour-blind people tell apart; and a marker each, for print.
+COLORS = {
+    "qdist": "#0072B2",
+    "qdist f32": "#56B4E9",
+    "MuJoCo": "#D55E00",
+    "coal": "#009E73",
+    "FCL": "#CC79A7",
+    "libccd EPA": "#E69F00",
+    "libccd MPR": "#8C6D1F",
+    "Bullet": "#000000",
+    "parry": "#7F7F7F",
+}
+MARKERS = dict(zip(COLORS, "oos^Dvv<P", strict=True))
+
+plt.rcParams.update(
+    {
+        "font.family": "sans-serif",
+        "font.size": 10,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "grid.color": "#dddddd",
+        "grid.linewidth": 0.6,
+        "axes.axisbelow": True,
+        "legend.frameon": False,
+        "svg.hashsalt": "qdist",
+        "svg.fonttype": "none",
+        "figure.constrained_layout.use": True,
+        "savefig.bbox": "tight",
+    }
+)
+
+
+def save(job, figure, name):
+    """NAME.svg and NAME.png of a part, and the Markdown that shows it."""
+    figure.savefig(job.path(f"{name}.svg"), metadata={"Date": None})
+    figure.savefig(job.path(f"{name}.png"), dpi=110)
+    plt.close(figure)
+
+
+def shown(job, name, what, sentence):
+    """A picture in the page: what it is, for those who cannot see it, and the sentence that says what to see."""
+    return f"![{what}]({job.part}/{name}.svg)\n\n*{sentence}*\n"
+
+
+def table(columns, rows, align=None):
+    """A table in Markdown."""
+    align = align or ["---"] + ["---:"] * (len(columns) - 1)
+    lines = ["| " + " | ".join(columns) + " |", "|" + "|".join(align) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows]) + "\n"
