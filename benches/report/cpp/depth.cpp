@@ -1,23 +1,33 @@
-// Depth of bodies by qdist and its peers: what they answer, how long it takes, and a loop for callgrind to count.
+// Depth of bodies by qdist and its peers: what they answer, how long it takes, and loops for callgrind to count.
 //
 //     depth solvers                                     their names
 //     depth answers CASES SOLVER:TOLERANCE...           one line a case: outcome, lower, upper, depth, normal
 //     depth times ROUNDS CASES SOLVER:TOLERANCE...      nanoseconds a query of each: the median over rounds, for each case
-//     depth repeat COUNT CASES SOLVER:TOLERANCE         runs all cases COUNT times
+//     depth count CASES SOLVER:TOLERANCE...             under callgrind: three dumps a solver, of 1, 1 and 3 rounds over all cases; SOLVER,CASES
 //
 // A tolerance of 0 is the solver's own. Cases that a solver does not answer are left out of its times and loops; whoever crashes or hangs takes the program along, so
-// `answers` is run by a parent that notices, and the cases that are worth repeating are given by it in a file of their own.
+// `answers` is run by a parent that notices, and is told which cases to leave out for whom (`--without SOLVER:TOLERANCE=CASE,CASE`).
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <map>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "solvers.hpp"
+
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else
+#define CALLGRIND_ZERO_STATS
+#define CALLGRIND_DUMP_STATS
+#endif
 
 namespace {
 
@@ -59,8 +69,19 @@ Asked asked(const std::string &text) {
     throw std::runtime_error("no solver " + text);
 }
 
-// `nullptr` where the solver does not take the case.
+std::map<std::string, std::set<std::string>> left_out;
+
+// SOLVER:TOLERANCE=CASE,CASE
+void leave_out(const std::string &text) {
+    const std::size_t equals = text.find('=');
+    std::istringstream list(text.substr(equals + 1));
+    for (std::string id; std::getline(list, id, ',');) left_out[text.substr(0, equals)].insert(id);
+}
+
+// `nullptr` where the solver does not take the case, or is not to have it.
 std::unique_ptr<Query> made(const Asked &asked, const Case &c) {
+    const auto out = left_out.find(asked.text);
+    if (out != left_out.end() && out->second.count(c.id) > 0) return nullptr;
     try {
         return asked.solver->make(c, asked.tolerance);
     } catch (const std::exception &e) {
@@ -122,13 +143,22 @@ void times(int rounds, const std::vector<Case> &cases, const std::vector<Asked> 
     }
 }
 
-void repeat(int count, const std::vector<Case> &cases, const Asked &asked) {
-    std::vector<std::unique_ptr<Query>> queries;
-    for (const Case &c : cases) queries.push_back(made(asked, c));
-    Answer answer;
-    for (int i = 0; i < count; ++i)
-        for (const auto &query : queries)
-            if (query) query->run(answer);
+// What is between two dumps is a number of rounds: the difference of two of them has nothing else in it.
+void count(const std::vector<Case> &cases, const std::vector<Asked> &all) {
+    std::printf("solver,cases\n");
+    for (const Asked &asked : all) {
+        std::vector<std::unique_ptr<Query>> queries;
+        for (const Case &c : cases)
+            if (auto query = made(asked, c)) queries.push_back(std::move(query));
+        Answer answer;
+        for (const int rounds : {1, 1, 3}) {  // (the first one warms up)
+            CALLGRIND_ZERO_STATS;
+            for (int i = 0; i < rounds; ++i)
+                for (const auto &query : queries) query->run(answer);
+            CALLGRIND_DUMP_STATS;
+        }
+        std::printf("%s,%zu\n", asked.text.c_str(), queries.size());
+    }
 }
 
 }  // namespace
@@ -141,18 +171,22 @@ int main(int argc, char **argv) try {
         for (const Solver &solver : SOLVERS) std::printf("%s\n", solver.name);
         return 0;
     }
-    const bool counts = what == "times" || what == "repeat";
-    int at = 2 + counts;
-    if ((what != "answers" && !counts) || argc < at + 2) {
+    int at = what == "times" ? 3 : 2;
+    if ((what != "answers" && what != "times" && what != "count") || argc < at + 2) {
         std::fprintf(stderr, "usage: see the head of depth.cpp\n");
         return 2;
     }
     const std::vector<Case> cases = load_cases(argv[at++]);
     std::vector<Asked> all;
-    for (; at < argc; ++at) all.push_back(asked(argv[at]));
+    for (; at < argc; ++at) {
+        if (std::strcmp(argv[at], "--without") == 0 && at + 1 < argc)
+            leave_out(argv[++at]);
+        else
+            all.push_back(asked(argv[at]));
+    }
     if (what == "answers") answers(cases, all);
     if (what == "times") times(std::atoi(argv[2]), cases, all);
-    if (what == "repeat") repeat(std::atoi(argv[2]), cases, all.front());
+    if (what == "count") count(cases, all);
     return 0;
 } catch (const std::exception &e) {
     std::fprintf(stderr, "depth: %s\n", e.what());
