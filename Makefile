@@ -20,7 +20,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg record record-compare clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
 all: lib
 
 lib:
@@ -165,6 +165,28 @@ bench-pdg:
 	@$(CXX) -std=c++17 -O3 -Wall -Wextra $(peer_includes) benches/pdg/fcl.cpp -lfcl -lccd -o $(out)/pdg_fcl
 	@echo "measuring depths of meshes; results go to $(OUT)"
 	@$(CARGO) bench --quiet --locked --package qdist-benches --bench pdg -- $(if $(QUICK),--quick) --fcl "$(abspath $(out))/pdg_fcl" "$(abspath $(OUT))"
+
+# In a virtual environment of its own: Python's packages that draw, and the peers that come with them.
+venv := $(abspath $(target))/report-venv
+$(venv)/.done: benches/report/requirements.txt
+	@./x need report
+	@echo "installing what the report needs from PyPI into $(venv)"
+	@python3 -m venv $(venv) && $(venv)/bin/pip install --quiet --disable-pip-version-check -r $< && touch $@
+report_for = cd benches && CARGO_TARGET_DIR=$(abspath $(target)) $(venv)/bin/python -m report $(abspath $(OUT))
+
+report: OUT = out/report
+report report-quick: lib $(venv)/.done
+	$(need)
+	@echo "measuring; the page goes to $(OUT)"
+	@$(report_for) $(if $(filter report-quick,$@)$(QUICK),--quick) $(if $(PART),--part $(PART))
+
+report-quick: OUT = out/report-quick
+
+bench-depth: OUT = out/depth
+bench-depth: lib $(venv)/.done
+	$(need)
+	@echo "measuring depth of bodies; results go to $(OUT)"
+	@$(report_for) $(if $(QUICK),--quick) --part depth --data-only --flat
 
 record: OUT = out/record
 record:

@@ -17,11 +17,12 @@ def main():
     parser.add_argument("out", type=Path, help="the folder that it is written to")
     parser.add_argument("--quick", action="store_true", help="fewer and smaller runs")
     parser.add_argument("--part", choices=PARTS, action="append", help="this part alone (may be said again)")
+    parser.add_argument("--flat", action="store_true", help="a single part: its files go to `out` itself")
     parser.add_argument("--data-only", action="store_true", help="no pictures and no page")
     arguments = parser.parse_args()
     begin = time.monotonic()
     for name in arguments.part or PARTS:
-        job = Job(arguments.out, name, arguments.quick)
+        job = Job(arguments.out, name, arguments.quick, arguments.flat)
         part = importlib.import_module(f"report.parts.{name.replace('-', '_')}")
         part.measure(job)
         if not arguments.data_only:

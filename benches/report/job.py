@@ -19,9 +19,9 @@ class Gap(Exception):
 class Job:
     """The files of a part, in a folder of its own."""
 
-    def __init__(self, out, part, quick):
+    def __init__(self, out, part, quick, flat=False):
         self.part, self.quick = part, quick
-        self.out = (Path(out) / part).resolve()
+        self.out = (Path(out) if flat else Path(out) / part).resolve()
         self.out.mkdir(parents=True, exist_ok=True)
         self.built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "report"
         self.built.mkdir(parents=True, exist_ok=True)

@@ -1,9 +1,12 @@
 """How pictures look."""
 
+import math
+
 import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
 
 # Okabe and Ito's colours, which colour-blind people tell apart; and a marker each, for print.
 COLORS = {
@@ -43,6 +46,16 @@ def save(job, figure, name):
     figure.savefig(job.path(f"{name}.svg"), metadata={"Date": None})
     figure.savefig(job.path(f"{name}.png"), dpi=110)
     plt.close(figure)
+
+
+def decades(axis):
+    """Labels of a logarithmic axis: at powers of ten only, at least two of them."""
+    low, high = axis.get_view_interval()
+    if math.floor(math.log10(high)) - math.ceil(math.log10(low)) < 1:
+        low, high = 10 ** math.floor(math.log10(low)), 10 ** math.ceil(math.log10(high))
+        axis.set_view_interval(low, high, ignore=True)
+    axis.set_major_locator(LogLocator(numticks=6))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def shown(job, name, what, sentence):

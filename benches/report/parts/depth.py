@@ -241,8 +241,8 @@ def draw(job, rows, axis, name, unit):
             points += [p for p in curve if p[2] <= 0.01]
         best = [p for p in points if not any((q[0] < p[0] and q[1] <= p[1]) or (q[0] <= p[0] and q[1] < p[1]) for q in points)]
         ax.plot([p[0] for p in best], [p[1] for p in best], linestyle="", marker="o", markersize=11, markerfacecolor="none", markeredgecolor="#333333", markeredgewidth=0.8)
-        ax.set(xscale="log", yscale="log", title=family if set_ == "std" else f"{family}, {set_}")
-        ax.set_ylim(LEAST / 2, 2)
+        ax.set(xscale="log", yscale="log", title=family if set_ == "std" else f"{family}, {set_}", ylim=(LEAST / 2, 2))
+        style.decades(ax.xaxis)
     for ax in axes.flat[len(panels) :]:
         ax.set_axis_off()
     for ax in axes[:, 0]:
