@@ -1,7 +1,8 @@
 // Depth of bodies by qdist and its peers: what they answer, how long it takes, and loops for callgrind to count.
 //
 //     depth solvers                                     their names
-//     depth answers CASES SOLVER:TOLERANCE...           one line a case: outcome, lower, upper, depth, normal
+//     depth answers CASES SOLVER:TOLERANCE...           one line a case: outcome, lower, upper, depth, normal; after `--mode up` (down, zero, ftz) with
+//                                                       that rounding mode, or with subnormal numbers taken for zero
 //     depth times ROUNDS CASES SOLVER:TOLERANCE...      nanoseconds a query of each: the median over rounds, for each case
 //     depth count CASES SOLVER:TOLERANCE...             under callgrind: three dumps a solver, of 1, 1 and 3 rounds over all cases; SOLVER,CASES
 //
@@ -9,6 +10,7 @@
 // `answers` is run by a parent that notices, and is told which cases to leave out for whom (`--without SOLVER:TOLERANCE=CASE,CASE`).
 
 #include <algorithm>
+#include <cfenv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +21,10 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 #include "solvers.hpp"
 
@@ -90,6 +96,26 @@ std::unique_ptr<Query> made(const Asked &asked, const Case &c) {
     }
 }
 
+std::string mode;
+
+// The floating-point environment that is asked for, while it lives. (Bodies are made before, numbers printed behind.)
+struct Mode {
+    Mode() {
+        if (mode == "up") std::fesetround(FE_UPWARD);
+        if (mode == "down") std::fesetround(FE_DOWNWARD);
+        if (mode == "zero") std::fesetround(FE_TOWARDZERO);
+#ifdef __SSE2__
+        if (mode == "ftz") _mm_setcsr(_mm_getcsr() | 0x8040);
+#endif
+    }
+    ~Mode() {
+        std::fesetround(FE_TONEAREST);
+#ifdef __SSE2__
+        _mm_setcsr(_mm_getcsr() & ~0x8040u);
+#endif
+    }
+};
+
 void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
     std::printf("case,solver,outcome,lower,upper,depth,nx,ny,nz\n");
     for (const Asked &asked : all)
@@ -97,7 +123,10 @@ void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
             Answer answer;
             answer.set_outcome("refused");
             try {
-                if (const auto query = made(asked, c)) query->run(answer);
+                if (const auto query = made(asked, c)) {
+                    const Mode held;
+                    query->run(answer);
+                }
             } catch (const std::exception &) {
                 answer = Answer();
                 answer.set_outcome("exception");
@@ -181,6 +210,8 @@ int main(int argc, char **argv) try {
     for (; at < argc; ++at) {
         if (std::strcmp(argv[at], "--without") == 0 && at + 1 < argc)
             leave_out(argv[++at]);
+        else if (std::strcmp(argv[at], "--mode") == 0 && at + 1 < argc)
+            mode = argv[++at];
         else
             all.push_back(asked(argv[at]));
     }

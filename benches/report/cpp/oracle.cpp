@@ -1,8 +1,9 @@
 // The truth that errors are measured against: depth of two bodies in quadruple precision, as a bracket, with none of the library's code.
 //
-//     oracle CASES [float] [share]      one line a case: case,lower,upper,nx,ny,nz
+//     oracle CASES [float] [SHARE [STEPS]]      one line a case: case,lower,upper,nx,ny,nz
 //
-// `float`: the numbers of the file are rounded to single precision first. `share`: the width of the bracket that is enough, relative to the depth (1e-15).
+// `float`: the numbers of the file are rounded to single precision first. SHARE: the width of the bracket that is enough, relative to the depth (1e-15); STEPS: after so many
+// it is left as wide as it is (4000).
 //
 // With h(u) the support function of A - B, d = min h(u) over unit vectors u: positive, how deep the bodies overlap, negative, minus their distance. Any u proves d <= h(u).
 // A polytope P inside of A - B proves d >= the least offset of its facets where the origin is in P, and d >= -|x| for any point x of it. P grows by the point that is
@@ -198,7 +199,7 @@ struct Found {
     }
 };
 
-// The point of the hull of some points that is nearest to the origin: Gilbert's steps, then exactly on the triangles, edges and corners that are left.
+// The point of the hull of at most four points that is nearest to the origin: that of all triangles, edges and corners. (The origin is not inside.)
 Vec nearest(const std::vector<Vec> &simplex, std::vector<Vec> &kept) {
     Vec best;
     Real least = HUGE_VALQ;
@@ -255,7 +256,7 @@ Found apart(const Difference &set, const Vec &first, Real share) {
     return found;
 }
 
-Found measured(const Case &c, bool single, Real share) {
+Found measured(const Case &c, bool single, Real share, int steps) {
     const Difference set(c, single);
     Found found{-HUGE_VALQ, HUGE_VALQ, {}};
     Real size = 0;
@@ -283,7 +284,7 @@ Found measured(const Case &c, bool single, Real share) {
     Polytope polytope;
     if (!polytope.start(corner, size * size * size * 1e-60Q)) return with_ball(apart(set, found.normal, share));
     const Real blur = size * 1e-31Q;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < steps; ++i) {
         Facet *low = polytope.lowest();
         if (low == nullptr) break;
         const Vec u = low->normal, p = set.farthest(u);
@@ -319,16 +320,16 @@ int main(int argc, char **argv) try {
         return 2;
     }
     bool single = false;
-    Real share = 1e-15Q;
-    for (int i = 2; i < argc; ++i) {
-        if (std::strcmp(argv[i], "float") == 0)
-            single = true;
-        else
-            share = strtoflt128(argv[i], nullptr);
+    int at = 2;
+    if (at < argc && std::strcmp(argv[at], "float") == 0) {
+        single = true;
+        ++at;
     }
+    const Real share = at < argc ? strtoflt128(argv[at++], nullptr) : 1e-15Q;
+    const int steps = at < argc ? std::atoi(argv[at]) : 4000;
     std::printf("case,lower,upper,nx,ny,nz\n");
     for (const Case &c : load_cases(argv[1])) {
-        const Found found = measured(c, single, share);
+        const Found found = measured(c, single, share, steps);
         std::printf("%s", c.id.c_str());
         print(found.lower);
         print(found.upper);

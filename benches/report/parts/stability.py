@@ -7,7 +7,7 @@ from decimal import Decimal
 
 from report import build, cases, style
 from report.job import run
-from report.parts.depth import parsed
+from report.parts.depth import DEFAULT, parsed
 
 # Steps that are enough for the oracle: what it leaves open is its own bracket, and only what contradicts that is false.
 ORACLE = ["1e-13", "600"]
@@ -177,7 +177,7 @@ def measured(job, extreme, values, solvers, programs):
 
 
 def answered(program, file, solver, mode):
-    command = [program, "answers", file, *(["--mode", mode] if mode else []), f"{solver}:0"]
+    command = [program, "answers", file, *(["--mode", mode] if mode else []), f"{solver}:{DEFAULT.get(solver, 0)}"]
     try:
         out = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS).stdout
     except subprocess.TimeoutExpired as late:
@@ -218,5 +218,99 @@ def judged(extreme, value, solver, mode, size, truth, said):
     }
 
 
+
+# ------------------------------------------------------------------------------------------------------------ the page
+
+
+INTRODUCTION = """## Stability: extreme bodies
+
+What happens where numbers are extreme: {pairs} random pairs a row, {rows} rows, each against the truth in quadruple precision. qdist is asked in every rounding mode, and with
+subnormal numbers flushed to zero, in double and in single precision; bodies are made in the usual mode before.
+
+**False brackets of qdist: {false} of {answers} answers.** Whoever gives a depth alone fails where that is off by more than 1 % of it, and by more than a millionth of the bodies'
+size, or where there is no answer.
+"""
+
+
 def tell(job):
-    return "## Stability\n"
+    rows_ = job.rows("stability.csv")
+    ours = [row for row in rows_ if row["solver"].startswith("qdist")]
+    extremes = list(dict.fromkeys((row["extreme"], row["value"]) for row in rows_))
+    text = [
+        INTRODUCTION.format(
+            pairs=rows_[0]["pairs"],
+            rows=len(extremes),
+            false=sum(int(row["false"]) for row in ours),
+            answers=sum(int(row["pairs"]) for row in ours),
+        )
+    ]
+    draw_failures(job, rows_, extremes)
+    what = "Share of pairs that each solver fails on, a row an extreme, a column a solver"
+    text.append(style.shown(job, "failures", what, "Darker is worse: the share of pairs without an answer, or with one that is wrong, in %. An empty cell is 0. Hatched: out of the range of single precision."))
+    draw_widths(job, ours, extremes)
+    what = "Width of qdist's brackets, a row an extreme"
+    text.append(style.shown(job, "widths", what, "How far an answer may be off, as it says itself: the median (dot) and the worst (end of the line) of each row, as a share of the bodies' size. Left is better. The default tolerance is 1e-6 of the depth, in single precision 1e-4."))
+    text.append(lost(ours))
+    text.append("Run it: `./x report PART=stability OUT=dir` (`dir/stability/stability.csv` has outcomes and rounding modes, too).\n")
+    return "\n".join(text)
+
+
+def name_of(extreme):
+    return ", ".join(filter(None, extreme)) if not extreme[0].endswith("by") and not extreme[0].endswith("thickness") else " ".join(extreme)
+
+
+def nearest(rows_, solver, extreme):
+    return next((r for r in rows_ if (r["solver"], r["mode"], (r["extreme"], r["value"])) == (solver, "nearest", extreme)), None)
+
+
+def draw_failures(job, rows_, extremes):
+    import matplotlib.pyplot as plt
+
+    solvers = [name for name in ["qdist", "qdist f32", *PEERS] if any(row["solver"] == name for row in rows_)]
+    figure, ax = plt.subplots(figsize=(8.5, 0.24 * len(extremes) + 1.2))
+    ax.grid(False)
+    for y, extreme in enumerate(extremes):
+        for x, solver in enumerate(solvers):
+            row = nearest(rows_, solver, extreme)
+            if row is None:
+                ax.add_patch(plt.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor="white", edgecolor="#bbbbbb", hatch="////", linewidth=0))
+                continue
+            share = int(row["failed"]) + int(row["no_answer"])
+            share = 100 * share / int(row["pairs"])
+            ax.add_patch(plt.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=plt.cm.Oranges(0.9 * share / 100) if share else "white", edgecolor="white"))
+            if share:
+                ax.text(x, y, f"{share:.0f}" if share >= 1 else "<1", ha="center", va="center", fontsize=8, color="white" if share > 60 else "black")
+    ax.set_xticks(range(len(solvers)), solvers, rotation=30, ha="left", rotation_mode="anchor")
+    ax.xaxis.tick_top()
+    ax.tick_params(length=0)
+    ax.set_yticks(range(len(extremes)), [name_of(extreme) for extreme in extremes], fontsize=8)
+    ax.set(xlim=(-0.5, len(solvers) - 0.5), ylim=(len(extremes) - 0.5, -0.5))
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+    style.save(job, figure, "failures")
+
+
+def draw_widths(job, ours, extremes):
+    import matplotlib.pyplot as plt
+
+    figure, ax = plt.subplots(figsize=(8.5, 0.24 * len(extremes) + 1.2))
+    for shift, solver in ((-0.15, "qdist"), (0.15, "qdist f32")):
+        found = [(y + shift, nearest(ours, solver, extreme)) for y, extreme in enumerate(extremes)]
+        found = [(y, max(float(row["median_width"]), 1e-17), max(float(row["worst_width"]), 1e-17)) for y, row in found if row and row["median_width"]]
+        ax.hlines([f[0] for f in found], [f[1] for f in found], [f[2] for f in found], color=style.COLORS[solver], linewidth=1.2)
+        ax.plot([f[1] for f in found], [f[0] for f in found], linestyle="", marker="o", markersize=4, color=style.COLORS[solver], label=solver)
+    ax.set(xscale="log", ylim=(len(extremes) - 0.5, -0.5), xlabel="width of the bracket, of the bodies' size")
+    ax.set_yticks(range(len(extremes)), [name_of(extreme) for extreme in extremes], fontsize=8)
+    figure.legend(loc="outside upper center", ncols=2)
+    style.save(job, figure, "widths")
+
+
+def lost(ours):
+    """Where brackets are wide, in words."""
+    wide = {}
+    for row in ours:
+        limit = 1e-3 if row["solver"].endswith("f32") else 1e-6
+        if row["mode"] == "nearest" and row["worst_width"] and float(row["worst_width"]) > limit:
+            wide.setdefault(row["solver"], []).append(f"{name_of((row['extreme'], row['value']))} ({float(row['worst_width']):.0e})")
+    text = "; ".join(f"{solver}: {', '.join(list_)}" for solver, list_ in wide.items()) or "nowhere"
+    return f"**Where we lose:** worst brackets wider than a millionth of the size (single precision: a thousandth): {text}.\n"
