@@ -14,6 +14,8 @@ struct Answer {
     double lower = NAN, upper = NAN;
     double depth = NAN;  // signed: negative is minus the distance
     double normal[3] = {NAN, NAN, NAN};  // from A to B: moving B by depth * normal gives touching contact
+    // Of qdist: what the query has done and used.
+    unsigned calls = 0, vertices = 0, facets = 0;
 
     void set_outcome(const char *word) { std::snprintf(outcome, sizeof outcome, "%s", word); }
 };

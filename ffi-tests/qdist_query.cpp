@@ -147,6 +147,9 @@ public:
         answer.lower = result.lower;
         answer.upper = answer.depth = result.upper;
         std::copy_n(result.normal, 3, answer.normal);
+        answer.calls = result.support_calls;
+        answer.vertices = result.vertices;
+        answer.facets = result.facets;
     }
 
 private:

@@ -3,6 +3,7 @@
 //     depth solvers                                     their names
 //     depth answers CASES SOLVER:TOLERANCE...           one line a case: outcome, lower, upper, depth, normal; after `--mode up` (down, zero, ftz) with
 //                                                       that rounding mode, or with subnormal numbers taken for zero
+//     depth used CASES SOLVER:TOLERANCE...              of qdist: support calls, vertices and facets
 //     depth times ROUNDS CASES SOLVER:TOLERANCE...      nanoseconds a query of each: the median over rounds, for each case
 //     depth count CASES SOLVER:TOLERANCE...             under callgrind: three dumps a solver, of 1, 1 and 3 rounds over all cases; SOLVER,CASES
 //
@@ -137,6 +138,17 @@ void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
         }
 }
 
+void used(const std::vector<Case> &cases, const std::vector<Asked> &all) {
+    std::printf("case,solver,calls,vertices,facets\n");
+    for (const Asked &asked : all)
+        for (const Case &c : cases)
+            if (const auto query = made(asked, c)) {
+                Answer answer;
+                query->run(answer);
+                std::printf("%s,%s,%u,%u,%u\n", c.id.c_str(), asked.text.c_str(), answer.calls, answer.vertices, answer.facets);
+            }
+}
+
 double nanoseconds(Query &query, int runs) {
     using Clock = std::chrono::steady_clock;
     Answer answer;
@@ -201,7 +213,7 @@ int main(int argc, char **argv) try {
         return 0;
     }
     int at = what == "times" ? 3 : 2;
-    if ((what != "answers" && what != "times" && what != "count") || argc < at + 2) {
+    if ((what != "answers" && what != "used" && what != "times" && what != "count") || argc < at + 2) {
         std::fprintf(stderr, "usage: see the head of depth.cpp\n");
         return 2;
     }
@@ -216,6 +228,7 @@ int main(int argc, char **argv) try {
             all.push_back(asked(argv[at]));
     }
     if (what == "answers") answers(cases, all);
+    if (what == "used") used(cases, all);
     if (what == "times") times(std::atoi(argv[2]), cases, all);
     if (what == "count") count(cases, all);
     return 0;
