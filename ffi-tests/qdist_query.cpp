@@ -148,8 +148,8 @@ public:
         answer.upper = answer.depth = result.upper;
         std::copy_n(result.normal, 3, answer.normal);
         answer.calls = result.support_calls;
-        answer.vertices = result.vertices;
-        answer.facets = result.facets;
+        answer.vertices = result.vertices_used;
+        answer.facets = result.facets_used;
     }
 
 private:

@@ -9,7 +9,7 @@ from pathlib import Path
 from report import page
 from report.job import Job
 
-PARTS = ["depth", "stability"]
+PARTS = ["depth", "stability", "leave-out"]
 
 
 def main():

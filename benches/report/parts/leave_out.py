@@ -58,7 +58,7 @@ def measure(job):
 
 
 def text_of(job, names, scalar):
-    library = build.library(job)
+    library = build.library()
     roots = [word for name in names for word in ("-u", f"qdist_{name}_{scalar}")]
     out = job.built / "linked"
     run(["ld", "--gc-sections", "-e", f"qdist_{names[0]}_{scalar}", *roots, *MEMORY, "-o", out, library])
