@@ -178,7 +178,7 @@ report: OUT = out/report
 report report-quick: lib $(venv)/.done
 	$(need)
 	@echo "measuring; the page goes to $(OUT)"
-	@$(report_for) $(if $(filter report-quick,$@)$(QUICK),--quick) $(if $(PART),--part $(PART))
+	@$(report_for) $(if $(filter report-quick,$@)$(QUICK),--quick) $(if $(PART),--part $(PART)) $(if $(COPY),--copy)
 
 report-quick: OUT = out/report-quick
 

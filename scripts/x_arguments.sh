@@ -47,6 +47,8 @@ refused 'QUICK' bench-dq QUICK=0
 refused 'CHECK' compare CHECK=yes
 refused 'does not know QUIK' bench-pdg QUIK=1
 refused 'PART' record PART=convexes
+refused 'PART' report PART=depths
+refused 'COPY' report COPY=yes
 refused 'A=dir B=dir' record-compare
 refused 'A=dir B=dir' record-compare "A=$folder"
 refused 'no folder' record-compare "A=$folder" "B=$folder/nothing"

@@ -7,9 +7,12 @@ import time
 from pathlib import Path
 
 from report import page
-from report.job import Job
+from report.job import ROOT, Job
 
 PARTS = ["depth", "stability", "leave-out"]
+# What is committed of a report.
+COPY = ROOT / "docs/report"
+TABLES = [("depth", "depth.csv"), ("stability", "stability.csv"), ("leave-out", "bytes.csv"), ("leave-out", "work.csv")]
 
 
 def main():
@@ -18,6 +21,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="fewer and smaller runs")
     parser.add_argument("--part", choices=PARTS, action="append", help="this part alone (may be said again)")
     parser.add_argument("--flat", action="store_true", help="a single part: its files go to `out` itself")
+    parser.add_argument("--copy", action="store_true", help="renew docs/report")
     parser.add_argument("--data-only", action="store_true", help="no pictures and no page")
     arguments = parser.parse_args()
     begin = time.monotonic()
@@ -29,6 +33,8 @@ def main():
             job.write_text("part.md", part.tell(job))
     if not arguments.data_only:
         page.write(arguments.out, PARTS, arguments.quick)
+        if arguments.copy:
+            page.publish(arguments.out, PARTS, COPY, TABLES)
         print(f"{arguments.out / 'report.html'} ({time.monotonic() - begin:.0f} s)", file=sys.stderr)
 
 

@@ -3,6 +3,7 @@
 import base64
 import html
 import re
+import shutil
 from pathlib import Path
 
 import markdown
@@ -59,6 +60,22 @@ def write(out, parts, quick):
     text = "\n".join([HEAD + note, contents, "", *texts, "## Where this was measured\n", where])
     (out / "report.md").write_text(text)
     (out / "report.html").write_text(PAGE.format(body=inlined(out, text)))
+
+
+def publish(out, parts, folder, tables):
+    """The copy that is committed: Markdown, pictures as PNG, and the tables that figures elsewhere are checked with."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in folder.iterdir():
+        file.unlink()
+    text = (Path(out) / "report.md").read_text()
+    for file in sorted(set(re.findall(r"\]\(([\w-]+/[\w-]+)\.svg\)", text))):
+        name = file.replace("/", "-") + ".png"
+        shutil.copyfile(Path(out) / f"{file}.png", folder / name)
+        text = text.replace(f"]({file}.svg)", f"]({name})")
+    for part, table in tables:
+        if part in parts and (Path(out) / part / table).exists():
+            shutil.copyfile(Path(out) / part / table, folder / table)
+    (folder / "report.md").write_text(text)
 
 
 def anchor(head):
