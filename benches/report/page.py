@@ -30,10 +30,11 @@ h1, h2, h3 {{ line-height: 1.25; margin: 2.2em 0 .6em; }}
 h1 {{ margin-top: 1em; }}
 h2 {{ border-top: 1px solid #d0d7de; padding-top: 1em; }}
 figure {{ margin: 1.2em 0; }}
-figure svg, figure img {{ max-width: 100%; height: auto; }}
+figure svg, figure img {{ max-width: 100%; min-width: 42rem; height: auto; }}
 figure, .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-size: .92em; font-variant-numeric: tabular-nums; }}
-th, td {{ padding: .25em .7em; border-bottom: 1px solid #d8dee4; vertical-align: top; }}
+th, td {{ padding: .25em .7em; border-bottom: 1px solid #d8dee4; vertical-align: bottom; white-space: nowrap; }}
+table + p {{ margin-top: 1.2em; }}
 code, pre {{ background: #f3f5f7; border-radius: 4px; font-size: .92em; }}
 code {{ padding: .1em .3em; }}
 pre {{ padding: .7em 1em; overflow-x: auto; }}

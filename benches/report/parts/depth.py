@@ -23,6 +23,9 @@ TOLERANCES = {
     "parry": ["0"],
 }
 
+# What solvers take for their tolerance by themselves: the place of that on their curve.
+OWN = {**DEFAULT, "libccd EPA": "1e-4", "libccd MPR": "1e-4", "FCL": "1e-6", "FCL signed": "1e-6", "MuJoCo": "1e-6", "coal": "1e-6"}
+
 # An error of more than this share of the depth is a failure.
 FAILED = 0.01
 # Curves end here: a smaller error is none.
@@ -233,7 +236,8 @@ def draw(job, rows, axis, name, unit):
         points = []
         for solver, color in style.COLORS.items():
             curve = [row for row in mine if row["solver"] == solver]
-            curve = sorted((float(row[axis]) * scale, max(float(row["median_error"]), LEAST), float(row["failed"])) for row in curve)
+            curve.sort(key=lambda row: -float(OWN.get(solver, "0") if row["tolerance"] == "default" else row["tolerance"]))
+            curve = [(float(row[axis]) * scale, max(float(row["median_error"]), LEAST), float(row["failed"])) for row in curve]
             if not curve:
                 continue
             (line,) = ax.plot([p[0] for p in curve], [p[1] for p in curve], color=color, linewidth=1.2, marker=style.MARKERS[solver], markersize=5)
