@@ -414,8 +414,8 @@ qdist_status qdist_solver_init_f64(void *memory,
 /// user: the pointer from the set. direction: as many numbers as the dimension; finite and not all zero, but
 /// not necessarily of unit length. point: room for as many.
 ///
-/// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-/// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+/// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. (Once there is an answer that rounding has left open, what was to make it
+/// better ends, and the answer stands.) Not INT32_MIN to INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 /// points are equally far, any of them.
 typedef int32_t (*qdist_support_f64)(void *user, const double *direction, double *point);
 

@@ -12,8 +12,8 @@ use super::*;
 /// user: the pointer from the set. direction: as many numbers as the dimension; finite and not all zero, but
 /// not necessarily of unit length. point: room for as many.
 ///
-/// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. Not INT32_MIN to
-/// INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
+/// Returns 0, or a code of your own, which ends the query and comes back as `callback_code`. (Once there is an answer that rounding has left open, what was to make it
+/// better ends, and the answer stands.) Not INT32_MIN to INT32_MIN + 3. The function must not unwind or longjmp, nor use the solver that is calling it. Where several
 /// points are equally far, any of them.
 pub type qdist_support_f64 =
     Option<unsafe extern "C" fn(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32>;
