@@ -154,6 +154,17 @@ pub fn random(count: usize) -> Vec<Case<6>> {
     (0..count).map(grasp).collect()
 }
 
+/// Soft fingers evenly around the equator of the unit ball.
+pub fn regular(count: usize) -> Case<6> {
+    let contact = |i: usize| {
+        let angle = 2.0 * std::f64::consts::PI * i as f64 / count as f64;
+        let p = Vector3::new(angle.cos(), angle.sin(), 0.0);
+        spatial(p, [-p, Vector3::z(), Vector3::z().cross(&p)], 0.5, 0.2)
+    };
+    let contacts = (0..count).map(contact).collect();
+    Case { name: format!("regular{count}"), a: Set::Grasp(contacts, Norm::Each), q: Metric::Ball, truth: None }
+}
+
 /// The first grasp that the dice give which is certainly deeper than `least`.
 fn force_closure(name: String, dice: &mut Dice, count: usize, least: f64) -> Case<6> {
     let mut memory = Box::new(Workspace::<f64, 6, 512, 4096>::new());

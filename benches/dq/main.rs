@@ -1,8 +1,8 @@
 //! d_Q in up to six dimensions: time, memory and width of the bracket, against plain expansion and the paper's
 //! bookkeeping.
 //!
-//! `./x bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv` and one picture a case, and compares with the
-//! bars the project has set itself.
+//! `./x bench-dq OUT=dir [QUICK=1]` writes `dir/dq.csv`, `dir/fit.csv`, `dir/anytime.csv` and one picture a case, and
+//! compares with the bars the project has set itself.
 //!
 //! A suffix of a case's name says what was run: nothing for the solver, `/expand`, `/scan`, `/scan_sorted`. `eps` is
 //! absolute; relative for the cases `random_*`.
@@ -15,6 +15,7 @@
 //!   its worst case), for more than four contacts, and in `f32`;
 //! * `f32` below 1e-4, which it does not resolve in six dimensions.
 
+mod anytime;
 mod bars;
 mod cases;
 mod contacts;
@@ -171,7 +172,10 @@ fn measure(bench: &mut Bench) {
             methods::run::<f64, 6>(&case, Method::Qdist, Tolerance::Relative(1e-3), 4096, bench.effort.sample / 5);
         bench.push(row);
     }
-    for case in space.iter().chain(recorded.iter().filter(|c| c.name.starts_with("soft"))) {
+    let regular = [3, 4].map(cases::regular);
+    regular.iter().for_each(|case| bench.qdist::<f64, 6>(case, 0.0));
+    let soft = recorded.iter().filter(|c| c.name.starts_with("soft"));
+    for case in space.iter().chain(soft).chain(made_up.iter().filter(|c| c.name == "soft3")).chain(&regular[..1]) {
         bench.scan(case, Matching::Pairs);
         bench.scan(case, Matching::Sorted);
         bench.expand(case);
@@ -196,6 +200,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut bench = Bench { effort, begin: Instant::now(), rows: Vec::new(), late: Vec::new() };
     measure(&mut bench);
     std::fs::write(folder.join("dq.csv"), report::table(&bench.rows))?;
+    std::fs::write(folder.join("anytime.csv"), anytime::table(bench.effort.sample / 5, bench.effort.patience))?;
     let fits = report::fits(&bench.rows);
     std::fs::write(folder.join("fit.csv"), &fits)?;
     let pictures = plot::all(&bench.rows, &folder)?;
@@ -207,6 +212,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("not begun, for want of time: {}", bench.late.join("; "));
     }
     let (rows, time) = (bench.rows.len(), bench.begin.elapsed().as_secs());
-    println!("{rows} rows in {time} s; dq.csv, fit.csv and {pictures} pictures are in {}", folder.display());
+    println!("{rows} rows in {time} s; dq.csv, fit.csv, anytime.csv and {pictures} pictures are in {}", folder.display());
     Ok(())
 }

@@ -130,7 +130,7 @@ where
 
 /// Runs for `sample`, at least five times after one to warm up; long runs need none, and are run three times up to a
 /// second, once beyond. The times are in nanoseconds, ascending.
-fn repeat<R>(sample: Duration, mut run: impl FnMut() -> R) -> (R, Vec<f64>) {
+pub fn repeat<R>(sample: Duration, mut run: impl FnMut() -> R) -> (R, Vec<f64>) {
     let mut timed = || {
         let start = Instant::now();
         let result = run();

@@ -9,7 +9,7 @@ from pathlib import Path
 from report import page
 from report.job import ROOT, Job
 
-PARTS = ["depth", "stability", "leave-out"]
+PARTS = ["depth", "high", "stability", "stiff", "leave-out", "growth", "papers"]
 # What is committed of a report.
 COPY = ROOT / "docs/report"
 TABLES = [("depth", "depth.csv"), ("stability", "stability.csv"), ("leave-out", "bytes.csv"), ("leave-out", "work.csv")]
