@@ -125,7 +125,7 @@ def figure_3(job):
 def draw_sets(job, rows):
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(2, 3, figsize=(11, 6.6))
+    figure, axes = plt.subplots(2, 3, figsize=(11, 4.8))
     for k, (name, (q, *_)) in enumerate(ZHENG.items()):
         drawn(axes.flat[k], job.path("sets") / f"a_{k}.svg")
         axes.flat[k].set_title(f"({name}) {q}, d = {float(rows[k]['lower']):.4f}")
@@ -183,7 +183,7 @@ def figure_4(job, high, rows):
     style.decades(right.xaxis)
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=9)
     style.save(job, figure, "figure-4")
-    sentence = "The paper's d_k is the lower bound (full); ours has an upper one, too (dashed). The paper's time is quadratic in the iterations: its square root is a straight line. So it is here where its bookkeeping is used; qdist's time grows nearly in proportion."
+    sentence = "The paper's d_k is the lower bound (full); ours has an upper one, too (dashed). The paper's time is quadratic in the iterations: its square root is a straight line. Axes are logarithmic, so the slope is half the exponent, which is fitted below."
     return style.shown(job, "figure-4", "Bounds, and the square root of time, against iterations", sentence) + exponents(high)
 
 
