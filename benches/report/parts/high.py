@@ -159,7 +159,7 @@ def finish(figure, axes, here, xlabel, ylabel):
         ax.set_axis_off()
     for ax in axes[:, 0]:
         ax.set_ylabel(ylabel)
-    for ax in axes[-1]:
+    for ax in axes.flat[max(len(here) - 3, 0) : len(here)]:
         ax.set_xlabel(xlabel)
 
 
