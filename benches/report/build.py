@@ -17,20 +17,20 @@ EIGEN = "/usr/include/eigen3"
 LIBRARIES = ["-lfcl", "-lccd", "-lqhullcpp", "-lqhull_r"]
 
 
-def build(job):
-    """Compiles `depth` where a source is newer, and returns its path."""
+def build(job, name="depth"):
+    """Compiles a program of solvers (`depth`, `stiff`) where a source is newer, and returns its path."""
     adapters = [adapter for adapter in (bullet(), mujoco(), coal()) if is_here(job, adapter)]
     makers = {
         "peers": (FFI / "peers.cpp", [EIGEN]),
         "cases": (FFI / "cases.cpp", []),
         "qdist_query": (FFI / "qdist_query.cpp", []),
         **{adapter["name"]: (CPP / f"{adapter['name']}.cpp", adapter["includes"]) for adapter in adapters},
-        "depth": (CPP / "depth.cpp", []),
+        name: (CPP / f"{name}.cpp", []),
     }
     has = [f"-DHAS_{adapter['name'].upper()}" for adapter in adapters]
-    objects = [compiled(job, name, source, includes, has if name == "depth" else []) for name, (source, includes) in makers.items()]
+    objects = [compiled(job, part, source, includes, has if part == name else []) for part, (source, includes) in makers.items()]
     link = [word for adapter in adapters for word in adapter["link"]]
-    program = job.built / "+".join(["depth", *(adapter["name"] for adapter in adapters)])
+    program = job.built / "+".join([name, *(adapter["name"] for adapter in adapters)])
     return made(program, [*objects, library()], [*cxx(), *objects, library(), *LIBRARIES, *link])
 
 

@@ -38,30 +38,6 @@
 
 namespace {
 
-class Nothing final : public Query {
-    void run(Answer &answer) override { answer.set_outcome("nothing"); }
-};
-
-struct Solver {
-    const char *name;
-    std::unique_ptr<Query> (*make)(const Case &, double tolerance);
-};
-
-constexpr Solver SOLVERS[] = {
-    {"nothing", make_nothing},     {"qdist", make_qdist_f64},   {"qdist f32", make_qdist_f32},
-    {"libccd EPA", make_libccd_epa}, {"libccd MPR", make_libccd_mpr},
-    {"FCL", make_fcl_libccd},      {"FCL signed", make_fcl_signed},
-#ifdef HAS_BULLET
-    {"Bullet", make_bullet},
-#endif
-#ifdef HAS_MUJOCO
-    {"MuJoCo", make_mujoco},
-#endif
-#ifdef HAS_COAL
-    {"coal", make_coal},
-#endif
-};
-
 struct Asked {
     std::string text;
     const Solver *solver;
@@ -203,8 +179,6 @@ void count(const std::vector<Case> &cases, const std::vector<Asked> &all) {
 }
 
 }  // namespace
-
-std::unique_ptr<Query> make_nothing(const Case &, double) { return std::make_unique<Nothing>(); }
 
 int main(int argc, char **argv) try {
     const std::string what = argc > 1 ? argv[1] : "";
