@@ -46,6 +46,12 @@ def build_parry(job):
     return target / "release/depth_parry"
 
 
+def build_growth(job):
+    """Compiles `growth`, which has the library alone, and returns its path."""
+    growth = compiled(job, "growth", CPP / "growth.cpp", [], [])
+    return made(job.built / "growth", [growth, library()], [*cxx(), growth, library()])
+
+
 def build_oracle(job):
     """Compiles `oracle` where a source is newer, and returns its path."""
     sources = [CPP / "oracle.cpp", FFI / "cases.cpp"]
