@@ -267,10 +267,10 @@ std::vector<Line> lines(uint32_t largest) {
         put("1/tolerance, cylinders", 1 / relative, 10, [=](Dice &dice) { return depth_of(cylinders(dice), relative); });
     }
     for (const double relative : {1e-1, 3e-2, 1e-2, 3e-3, 1e-3})
-        put("1/tolerance, ellipsoid in 6-D", 1 / relative, 1, [=](Dice &) { return solved(ellipsoid_in(6), 6, relative); });
+        put("1/tolerance, ellipsoid in 4-D", 1 / relative, 1, [=](Dice &) { return solved(ellipsoid_in(4), 4, relative); });
     for (const uint32_t count : {8, 30, 100, 300, 1000, 3000, 10000, 30000, 100000})
         if (count <= largest) put("vertices of a hull", count, count > 5000 ? 2 : 5, [=](Dice &dice) { return depth_of(hulls(dice, count), 1e-6); });
-    for (const uint32_t n : {2, 3, 4, 5, 6}) put("dimension", n, 1, [=](Dice &) { return solved(ellipsoid_in(n), n, 1e-2); });
+    for (const uint32_t n : {2, 3, 4, 5, 6}) put("dimension", n, 1, [=](Dice &) { return solved(ellipsoid_in(n), n, 1e-1); });
     for (const uint32_t count : {3, 4, 5, 6, 8}) put("contacts of a grasp", count, 3, [=](Dice &dice) { return solved(grasp(dice, count), 6, 3e-2); });
     for (const uint32_t count : {8, 32, 128, 512, 2048}) put("vertices of Q", count, 2, [=](Dice &dice) { return solved(vertices_of_q(dice, count), 3, 1e-4); });
     return all;

@@ -22,7 +22,7 @@ MEASURES = {
 SERIES = {
     "1/tolerance, ellipsoids": "1 / relative tolerance",
     "1/tolerance, cylinders": "1 / relative tolerance",
-    "1/tolerance, ellipsoid in 6-D": "1 / relative tolerance",
+    "1/tolerance, ellipsoid in 4-D": "1 / relative tolerance",
     "vertices of a hull": "vertices",
     "dimension": "dimension n",
     "contacts of a grasp": "contacts",
