@@ -526,7 +526,7 @@ static void Q(plans)(void) {
     CHECK(Q(qdist_unit_segment)(&unit, &ray) == QDIST_OK && unit.vertex_count == 1);
     CHECK(SOLVE(&unit) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
     CHECK(Q(qdist_unit_vertices)(&unit, &list) == QDIST_OK && unit.vertex_count == 3);
-    CHECK(SOLVE(&unit) == QDIST_OK && IS(1) && result.plan == QDIST_PLAN_RAYS);
+    CHECK(SOLVE(&unit) == QDIST_OK && IS(1) && result.plan != QDIST_PLAN_CONES);
 
     /* The same cube by callbacks; what fails is said. */
     memset(&own, 0, sizeof own);
