@@ -75,7 +75,8 @@
 //! scalar      f32 and f64
 //! ```
 //!
-//! The C layer is a package of its own, `capi`, and stands on all of this. (`tests/core/house.rs` reads this list, and fails where an arrow points up.)
+//! The C layer is a package of its own, `capi`, and stands on all of this. (`tests/core/house.rs` reads this list, and fails where an arrow points up.) Where a test goes, of a new shape,
+//! plan, seed or margin: `tests/README.md`.
 //!
 //! # Memory, threads, failure
 //!
