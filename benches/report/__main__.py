@@ -12,7 +12,15 @@ from report.job import ROOT, Job
 PARTS = ["depth", "high", "stability", "stiff", "leave-out", "growth", "papers"]
 # What is committed of a report.
 COPY = ROOT / "docs/report"
-TABLES = [("depth", "depth.csv"), ("stability", "stability.csv"), ("leave-out", "bytes.csv"), ("leave-out", "work.csv")]
+TABLES = [
+    ("depth", "depth.csv"),
+    ("high", "linearised.csv"),
+    ("stability", "stability.csv"),
+    ("stiff", "stiff.csv"),
+    ("leave-out", "bytes.csv"),
+    ("leave-out", "work.csv"),
+    ("growth", "growth.csv"),
+]
 
 
 def main():
