@@ -170,6 +170,8 @@ HIDDEN = {
     "polytope: centre beneath a point, in two words": "as \"surface folded over\": the proof needs it",
     "rays: ball along a ray, seen from there": "one roundoff, of which the rounding of heights has ten",
     "pair: by direction, matrices that stretch": "errors are spread by the matrix as it is; the rest is hidden by the rounding of the sum",
+    "pair: ball under a matrix that stretches": "left as it is, the ball is charged what it is off: true as well, only wider",
+    "pair: ball beside the points, rounding": "a roundoff of the radius, where heights have ten of a reach that is as large; half spaces take the difference unrounded",
     "pair: ball in the points, rounding": "the ball counts in the core's extent and its twenty roundoffs",
     "pair: ball that is an image, rounding of what is measured": "four of the bound's own six roundoffs",
     "meridian: rounding of what is measured": "three roundoffs, where points are charged twenty",
