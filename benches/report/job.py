@@ -12,10 +12,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 
-class Gap(Exception):
-    """Something that is measured is not here: told on the page, and no reason to stop."""
-
-
 class Job:
     """The files of a part, in a folder of its own."""
 
@@ -35,10 +31,10 @@ class Job:
     def say(self, text):
         print(f"[{self.part}] {text}", file=sys.stderr, flush=True)
 
-    def step(self, name, outputs, work, inputs=()):
-        """Does `work`, which writes `outputs`, unless they are there already: written by this source, with these inputs and settings."""
+    def step(self, name, outputs, work):
+        """Does `work`, which writes `outputs`, unless they are there already: written by this source, with these settings."""
         stamp = self.path(f".{name}.json")
-        wanted = {"source": source(), "quick": self.quick, "inputs": [digest(self.path(file)) for file in inputs]}
+        wanted = {"source": source(), "quick": self.quick}
         if stamp.exists() and json.loads(stamp.read_text()) == wanted and all(self.path(file).exists() for file in outputs):
             return
         begin = time.monotonic()
@@ -61,10 +57,6 @@ class Job:
             writer.writeheader()
             writer.writerows(rows)
         part.rename(self.path(name))
-
-
-def digest(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else None
 
 
 def source():

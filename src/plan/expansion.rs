@@ -152,11 +152,7 @@ impl<T: Real, const N: usize> Polytope<'_, T, N> {
     fn rate_fresh(&mut self, query: &mut Query<'_, T, N>) -> Result<(), Failure> {
         while let Some(index) = self.next_fresh() {
             let Some(facet) = self.facet(index) else { break };
-            let key = query.key(&facet.normal, facet.offset);
-            let Ok(key) = key else {
-                self.doubt();
-                return key.map(|_| ());
-            };
+            let key = query.key(&facet.normal, facet.offset).inspect_err(|_| self.doubt())?;
             if !self.set_key(index, key, key < query.ratio()) {
                 query.skip(key);
             }

@@ -34,6 +34,8 @@ pub(crate) mod answer;
 pub(crate) mod arcs;
 mod axis;
 pub(crate) mod body;
+#[cfg(test)]
+mod dice;
 mod ellipsoids;
 mod fine;
 pub(crate) mod half_space;

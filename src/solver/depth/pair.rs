@@ -185,6 +185,7 @@ impl<T: Real, const N: usize> Support<T, N> for Pair<'_, '_, T, N> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::dice::dice;
     use super::*;
     use nalgebra::Rotation3;
 
@@ -210,14 +211,6 @@ mod tests {
     /// Products of such numbers are exact, and sums of some as good as that.
     fn wide(x: &Vector<f32, 3>) -> Vector<f64, 3> {
         x.map(f64::from)
-    }
-
-    fn dice(seed: u64) -> impl FnMut() -> f64 {
-        let mut s = seed;
-        move || {
-            s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (s >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
     }
 
     /// What a pair of exact sets with so many points says of its error, in any direction and coordinate by coordinate, is true: of its height, and of where its

@@ -1,6 +1,6 @@
 //! What of a body reaches farthest into a half space.
 
-use crate::math::{TwoWords, Vector, finite, norm};
+use crate::math::{TwoWords, finite, norm};
 use crate::scalar::Real;
 use crate::solver::depth::body::{Anchor, Body};
 use crate::support::Failure;
@@ -8,9 +8,8 @@ use crate::support::failure::NOT_FINITE;
 
 /// The farthest point along a direction, in the body's frame.
 pub(super) struct Deepest<T, const N: usize> {
-    /// The point of the core, and what is put on it there.
-    pub core: TwoWords<T, N>,
-    pub swell: TwoWords<T, N>,
+    /// The exact sum of both is meant: of a point of the core and what is put on it there, or of two words.
+    pub point: TwoWords<T, N>,
     /// The balls around the placed point, one of them taken away.
     pub balls: [T; 2],
     /// How far the point is off what it stands for.
@@ -35,8 +34,8 @@ impl<T: Real, const N: usize> Deepest<T, N> {
         }
         let swell = direction * (a.inflation / norm(&direction));
         let astray = norm(&v.low) * T::of(1.01) + lost;
-        let (core, swell) = (TwoWords::from(point), TwoWords::from(swell));
-        Ok(Deepest { core, swell, balls: [a.shape.radius(), -a.inflation], error: anchor.error, astray })
+        let point = TwoWords { high: point, low: swell };
+        Ok(Deepest { point, balls: [a.shape.radius(), -a.inflation], error: anchor.error, astray })
     }
 
     /// The same in two words; `None` where the shape does not tell. A ball that rolls in the shape is its image under the body's matrix, as the shape is: it is in
@@ -46,13 +45,12 @@ impl<T: Real, const N: usize> Deepest<T, N> {
         if !(a.shape.extent() > T::zero() || anchor.extent.is_zero()) {
             return None;
         }
-        let core = a.shape.support_in_two_words(v)?;
+        let point = a.shape.support_in_two_words(v)?;
         // 2^8 u^2 by contract, in the usual rounding mode.
         let error =
             a.shape.extents().sum() * (T::count(1 << 10) * T::ROUNDOFF * T::ROUNDOFF) + T::count(1 << 10) * T::TINY;
         let balls = [a.shape.radius(), -a.shape.rolling_radius()];
-        let sane = finite(&core.high) && finite(&core.low) && error.finite();
-        let swell = TwoWords::from(Vector::zeros());
-        sane.then_some(Deepest { core, swell, balls, error, astray: lost })
+        let sane = finite(&point.high) && finite(&point.low) && error.finite();
+        sane.then_some(Deepest { point, balls, error, astray: lost })
     }
 }

@@ -92,20 +92,19 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
 
     /// The depth, where this is what reaches farthest into the half space.
     fn measure(&self, a: &Body<'_, T, N>, deepest: &Deepest<T, N>, anchor: &Anchor<T, N>) -> Found<T, N> {
-        let Deepest { core, swell, .. } = deepest;
+        let point = &deepest.point;
         let relative = |frame: &Vector<T, N>| {
             TwoWords::of(|i| {
                 let mut sum = Accumulator::new(a.translation[i]);
                 sum.add(-frame[i]);
                 for j in 0..N {
-                    for word in [core.high[j], swell.high[j], core.low[j], swell.low[j]] {
-                        sum.add_product(a.rotation[(i, j)], word);
-                    }
+                    sum.add_product(a.rotation[(i, j)], point.high[j]);
+                    sum.add_product(a.rotation[(i, j)], point.low[j]);
                 }
                 sum
             })
         };
-        let sizes = sizes(&a.rotation, &(core.high.abs() + swell.high.abs()))
+        let sizes = sizes(&a.rotation, &(point.high.abs() + point.low.abs()))
             + a.translation.abs()
             + self.body.translation.abs();
         let (height, lost) = self.height(&relative(&self.body.translation), &sizes, &deepest.balls);

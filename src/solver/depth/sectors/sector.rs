@@ -149,16 +149,9 @@ mod tests {
     use super::*;
     use crate::math::unit;
     use crate::solver::depth::body::Body;
+    use crate::solver::depth::dice::dice;
     use crate::solver::depth::pair::Pair;
     use crate::support::BoxShape;
-
-    fn dice(seed: u64) -> impl FnMut() -> f64 {
-        let mut s = seed;
-        move || {
-            s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (s >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
 
     /// In `f64`: the point of the half plane for a point of M, over the azimuths of the sector.
     fn flattened(sector: &Sector<'_, f32>, vertex: &Vertex<f32, 3>) -> [f64; 2] {
