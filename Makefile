@@ -20,7 +20,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack instructions figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
 all: lib
 
 lib:
@@ -125,6 +125,12 @@ purity:
 stack: lib
 	@$(CC) -std=gnu99 -O2 -Wall -Wextra -Iinclude ffi-tests/stack.c $(lib) -o $(out)/stack
 	@$(out)/stack
+
+# WRITE=1 renews the golden numbers.
+instructions: lib
+	$(need)
+	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/instructions.c $(lib) -lm -o $(out)/instructions
+	@scripts/instructions.sh $(out)/instructions $(if $(WRITE),write)
 
 figures: lib lib-mesh
 	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures.c $(lib) -lm -o $(out)/figures

@@ -9,11 +9,13 @@ from pathlib import Path
 from report import page
 from report.job import ROOT, Job
 
-PARTS = ["depth", "high", "stability", "stiff", "leave-out", "growth", "papers"]
+PARTS = ["depth", "cases", "high", "stability", "stiff", "leave-out", "growth", "papers"]
 # What is committed of a report.
 COPY = ROOT / "docs/report"
 TABLES = [
     ("depth", "depth.csv"),
+    ("cases", "totals.csv"),
+    ("cases", "ratios.csv"),
     ("high", "linearised.csv"),
     ("stability", "stability.csv"),
     ("stiff", "stiff.csv"),

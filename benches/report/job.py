@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+from report import tables
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -45,10 +47,7 @@ class Job:
 
     def rows(self, name):
         """A CSV file as a list of dictionaries; empty where there is none."""
-        if not self.path(name).exists():
-            return []
-        with open(self.path(name), newline="") as file:
-            return list(csv.DictReader(file))
+        return tables.read(self.path(name))
 
     def write_rows(self, name, rows, columns):
         part = self.path(name + ".part")

@@ -8,6 +8,8 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from report.tables import table  # noqa: F401 (parts say style.table)
+
 # Okabe and Ito's colours, which colour-blind people tell apart; and a marker each, for print.
 COLORS = {
     "qdist": "#0072B2",
@@ -61,10 +63,3 @@ def decades(axis):
 def shown(job, name, what, sentence):
     """A picture in the page: what it is, for those who cannot see it, and the sentence that says what to see."""
     return f"![{what}]({job.part}/{name}.svg)\n\n*{sentence}*\n"
-
-
-def table(columns, rows, align=None):
-    """A table in Markdown."""
-    align = align or ["---"] + ["---:"] * (len(columns) - 1)
-    lines = ["| " + " | ".join(columns) + " |", "|" + "|".join(align) + "|"]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows]) + "\n"

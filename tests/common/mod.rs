@@ -27,6 +27,7 @@ pub mod cases;
 pub mod dd;
 pub mod dice;
 pub mod exact;
+pub mod golden;
 pub mod hull;
 pub mod lattice;
 pub mod memory;

@@ -99,7 +99,7 @@ fn run_file<T: Real>(file: &Path) -> Vec<Report> {
     cases.iter().map(run_one).collect()
 }
 
-fn fixtures() -> Vec<PathBuf> {
+pub(super) fn fixtures() -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"))
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -13,6 +13,7 @@ mod depth_margins;
 mod errors;
 mod exact_margins;
 mod far_points;
+mod golden;
 mod half_spaces;
 mod house;
 mod hulls;

@@ -11,6 +11,7 @@ mod data;
 mod fingers;
 mod flat;
 mod forces;
+mod golden;
 mod gradients;
 mod hand;
 mod linearized;

@@ -12,6 +12,7 @@ mod collide;
 mod contacts;
 mod depth;
 mod distance;
+mod golden;
 mod metric;
 mod optimize;
 mod samples;

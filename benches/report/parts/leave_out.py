@@ -1,9 +1,10 @@
 """What a scene does not need: bytes that are not linked, and work that is not done."""
 
+import re
 import statistics
 
-from report import build, cases, style
-from report.job import run
+from report import build, cases, rust, style
+from report.job import ROOT, run
 from report.parts.depth import DEFAULT, counted
 
 # Compilers expect these everywhere; they are not the library's.
@@ -55,6 +56,22 @@ def measure(job):
 
     job.step("bytes", ["bytes.csv"], sizes)
     job.step("work", ["work.csv"], lambda: work(job))
+    job.step("stack", ["stack.csv"], lambda: stack(job))
+    job.step("memory", ["memory.csv", "plane.csv"], lambda: memory(job))
+
+
+def stack(job):
+    said = run(["make", "--no-print-directory", "stack"], cwd=ROOT)
+    rows = [{"query": query, "bytes": size} for query, size in re.findall(r"^(.*?) +(\d+) bytes$", said, re.M)]
+    job.write_rows("stack.csv", rows, ["query", "bytes"])
+
+
+def memory(job):
+    """The tables that the example prints."""
+    said = run([rust.cargo(), "run", "--quiet", "--release", "--locked", "--features", "std", "--example", "memory"], cwd=ROOT)
+    for name, table in zip(("memory.csv", "plane.csv"), said.strip().split("\n\n")):
+        head, _, *lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+        job.write_rows(name, [dict(zip(head, line)) for line in lines], head)
 
 
 def text_of(job, names, scalar):
@@ -116,6 +133,10 @@ def tell(job):
     names = {"qdist": "f64", "qdist f32": "f32"}
     lines = [[row["what"], names[row["solver"]], row["instructions"] or "gap", f"{float(row['calls']):.0f}", f"{float(row['vertices']):.0f}", f"{float(row['facets']):.0f}"] for row in work_rows]
     text.append(style.table(["bodies", "scalar", "instructions", "support calls", "vertices", "facets"], lines, ["---", "---", "---:", "---:", "---:", "---:"]))
+    text.append("\n**Stack** of a query, and the **memory** that a caller gives a solver, in bytes:\n")
+    text.append(style.table(["query", "bytes"], [list(row.values()) for row in job.rows("stack.csv")]))
+    rows = job.rows("memory.csv")
+    text.append(style.table(list(rows[0]), [list(row.values()) for row in rows], ["---:"] * 5))
     text.append("\nRun it: `./x report PART=leave-out OUT=dir`; `./x purity` proves that a program of boxes contains no other shape, and none in `float` anything in `double`.\n")
     return "\n".join(text)
 

@@ -40,8 +40,8 @@ struct Hull {
 }
 
 impl Hull {
-    /// Of the set with this support mapping.
-    fn of(mapping: impl Fn(&Point) -> Option<Point>) -> Self {
+    /// Of the set with this support mapping; `smooth`: how many points, where every point is another one.
+    fn of(mapping: impl Fn(&Point) -> Option<Point>, smooth: usize) -> Self {
         let sample = |count: usize| {
             let mut points: Vec<Point> = Vec::new();
             for point in directions(count).filter_map(|u| mapping(&u)) {
@@ -53,27 +53,31 @@ impl Hull {
             points
         };
         let mut points = sample(DIRECTIONS);
-        let flat = points.len() < SMOOTH / 2;
+        let flat = points.len() < smooth / 2;
         if !flat {
-            points = sample(SMOOTH);
+            points = sample(smooth);
         }
         let faces = faces(&points);
         Self { points, faces, flat }
     }
 }
 
-/// A plane through three points with all others beneath it is a face; its polygon goes through all points on it.
+/// The faces of the hull, as outer normals and polygons. Around an edge of the hull its points span less than half a turn: the outermost of them to
+/// either side makes a face with it. Of two points that are no edge, that plane has points above it.
 fn faces(points: &[Point]) -> Vec<(Point, Vec<Point>)> {
     let size = points.iter().fold(0.0, |m: f64, p| m.max(p.norm()));
-    let (slack, n) = (1e-9 * size, points.len());
+    let slack = 1e-9 * size;
     let mut faces: Vec<(Point, Vec<Point>)> = Vec::new();
-    for (i, j, k) in (0..n).flat_map(|i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| (i, j, k)))) {
-        let across = (points[j] - points[i]).cross(&(points[k] - points[i]));
-        if !(across.norm() > 1e-9 * size * size) {
-            continue;
-        }
-        for normal in [across.normalize(), -across.normalize()] {
-            let height = normal.dot(&points[i]);
+    for (i, from) in points.iter().enumerate() {
+        for (to, side) in points[i + 1..].iter().flat_map(|to| [(to, 1.0), (to, -1.0)]) {
+            let across = |p: &Point| (to - from).cross(&(p - from)) * side;
+            let beside = points.iter().filter(|p| across(p).norm() > slack * size);
+            let Some(outer) = beside.reduce(|outer, p| if across(outer).dot(&(p - from)) > 0.0 { p } else { outer })
+            else {
+                continue;
+            };
+            let normal = across(outer).normalize();
+            let height = normal.dot(from);
             if points.iter().any(|p| normal.dot(p) > height + slack) {
                 continue;
             }
@@ -148,9 +152,9 @@ fn shade(color: RGBColor, light: f64) -> RGBColor {
 
 pub fn draw(file: &Path, title: &str, scene: &Scene, basis: &SMatrix<f64, 6, 3>) -> Result<(), Box<dyn Error>> {
     let set = WrenchSet::new(&scene.wrenches.parts, scene.reference.norm);
-    let outer = Hull::of(|u| set.support(&(basis * u)).ok().map(|p| basis.tr_mul(&p)));
+    let outer = Hull::of(|u| set.support(&(basis * u)).ok().map(|p| basis.tr_mul(&p)), SMOOTH);
     let d = scene.d();
-    let inner = Hull::of(|u| scene.reference.q.farthest(&(basis * u)).map(|q| basis.tr_mul(&q) * d));
+    let inner = Hull::of(|u| scene.reference.q.farthest(&(basis * u)).map(|q| basis.tr_mul(&q) * d), SMOOTH);
     // The axes stick out of the set.
     let tips: Vec<Point> = (0..3)
         .map(|i| {
@@ -221,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_cube_has_six_faces_of_four_corners() {
-        let cube = Hull::of(|u| Some(u.map(f64::signum)));
+        let cube = Hull::of(|u| Some(u.map(f64::signum)), SMOOTH);
         assert_eq!((cube.points.len(), cube.faces.len(), cube.flat), (8, 6, true));
         assert!(cube.faces.iter().all(|(_, face)| face.len() == 4));
         // In order: every side is an edge of the cube.
@@ -234,9 +238,9 @@ mod tests {
     /// Euler: triangles around a sphere.
     #[test]
     fn a_ball_is_round() {
-        let ball = Hull::of(|u| Some(*u));
-        assert_eq!((ball.points.len(), ball.flat), (SMOOTH, false));
+        let ball = Hull::of(|u| Some(*u), 60);
+        assert_eq!((ball.points.len(), ball.flat), (60, false));
         let corners: usize = ball.faces.iter().map(|(_, face)| face.len()).sum();
-        assert_eq!(SMOOTH + ball.faces.len(), 2 + corners / 2);
+        assert_eq!(60 + ball.faces.len(), 2 + corners / 2);
     }
 }
