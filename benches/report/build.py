@@ -52,6 +52,12 @@ def build_growth(job):
     return made(job.built / "growth", [growth, library()], [*cxx(), growth, library()])
 
 
+def build_extremes(job):
+    """Compiles `extremes`, which has the library and its own truth, and returns its path."""
+    sources = [CPP / "extremes.cpp", library()]
+    return made(job.built / "extremes", sources, [*cxx(), "-std=gnu++17", "-O2", f"-I{ROOT / 'include'}", *sources, "-lquadmath"])
+
+
 def build_oracle(job):
     """Compiles `oracle` where a source is newer, and returns its path."""
     sources = [CPP / "oracle.cpp", FFI / "cases.cpp"]

@@ -7,6 +7,7 @@ from decimal import Decimal
 
 from report import build, cases, style
 from report.job import run
+from report.parts import extremes
 from report.parts.depth import DEFAULT, parsed
 
 # Steps that are enough for the oracle: what it leaves open is its own bracket, and only what contradicts that is false.
@@ -156,6 +157,9 @@ def measure(job):
         work = lambda: job.write_rows(output, measured(job, extreme, values, solvers, (program, oracle)), columns)
         job.step(extreme, [output], work)
         all_rows += job.rows(output)
+    for name, more in (("sets-and-grasps", extremes.sets_and_grasps), ("meshes", extremes.meshes)):
+        job.step(name, [f"{name}.csv"], lambda: job.write_rows(f"{name}.csv", more(job), columns))
+        all_rows += job.rows(f"{name}.csv")
     job.write_rows("stability.csv", all_rows, columns)
 
 
