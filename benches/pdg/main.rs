@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! ./x bench-pdg OUT=dir [QUICK=1]
-//! cargo bench -p qdist-benches --bench pdg -- [--quick] [--fcl PROGRAM] [DIR]
+//! cargo bench -p qdist-benches --bench pdg -- [--quick] [--fcl PROGRAM] [--triangles LIBRARY=PROGRAM]... [DIR]
 //! ```
 //!
 //! One thread. Cold queries of the shared set, or of meshes made by code where it is not there, with every effort and with the paper's variants:
 //! unions of constraints, sampling, and the K nearest contact samples as seeds. The tracker along paths; the solid test and the distance against
-//! FCL's on the same poses. Writes `pdg.csv`, `warm.csv`, `proximity.csv` and a picture of error against time per metric.
+//! FCL's on the same poses; the deepest pair of triangles by other libraries. Writes `pdg.csv`, `warm.csv`, `proximity.csv`, `triangles.csv` and a
+//! picture of error against time per metric.
 
 mod bars;
 mod measure;
@@ -23,11 +24,17 @@ use std::time::{Duration, Instant};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut quick, mut fcl, mut folder) = (false, None, PathBuf::from("out/pdg"));
+    let mut triangles = Vec::new();
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--quick" => quick = true,
             "--fcl" => fcl = arguments.next().map(PathBuf::from),
+            "--triangles" => {
+                let asked = arguments.next().unwrap_or_default();
+                let (library, program) = asked.split_once('=').ok_or("--triangles takes LIBRARY=PROGRAM")?;
+                triangles.push((library.to_string(), PathBuf::from(program)));
+            }
             // cargo bench says `--bench`.
             _ if argument.starts_with('-') => {}
             _ => folder = argument.into(),
@@ -51,6 +58,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let compared = fcl.as_deref().map(compare).transpose()?;
     if let Some(compared) = &compared {
         std::fs::write(folder.join("proximity.csv"), report::proximity_csv(compared))?;
+    }
+    if !triangles.is_empty() {
+        let deepest = peers::deepest(&scenes, &cold, &triangles, &folder, rounds)?;
+        std::fs::write(folder.join("triangles.csv"), report::triangles_csv(&deepest))?;
     }
     println!("\nError against time\n{}", report::curve(&cold));
     println!("Bars, default effort\n{}", bars::summary(&scenes, &cold, &warm, compared.as_deref()));

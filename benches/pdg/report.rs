@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::measure::{Cold, VARIANTS};
-use crate::peers::Compared;
+use crate::peers::{Compared, Deepest};
 use qdist_cli::mesh::answer::quoted;
 use qdist_cli::mesh::input::Kind;
 use qdist_cli::mesh::table::quantile;
@@ -25,6 +25,16 @@ pub fn csv(cold: &[Cold]) -> String {
             write!(text, "{id},{group},{kind},{variant},{},{},{},{best},{ratio},{free},", r.outcome, r.lower, r.upper);
         let n = r.counters;
         let _ = writeln!(text, "{},{},{},{},{median},{late}", n.collision, n.contact, n.distance, c.times.len());
+    }
+    text
+}
+
+/// `triangles.csv`: what other libraries' pairs of triangles tell of the queries.
+pub fn triangles_csv(deepest: &[Deepest]) -> String {
+    let mut text = "query,group,library,depth,best_known,ns\n".to_string();
+    for d in deepest {
+        let best = d.best_known.map_or(String::new(), |x| x.to_string());
+        let _ = writeln!(text, "{},{},{},{},{best},{}", quoted(&d.query), d.group, d.library, d.depth, d.ns);
     }
     text
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 from report import page
 from report.job import ROOT, Job
 
-PARTS = ["depth", "cases", "high", "stability", "stiff", "leave-out", "growth", "papers"]
+PARTS = ["depth", "cases", "high", "forces", "meshes", "stability", "stiff", "leave-out", "growth", "papers"]
 # What is committed of a report.
 COPY = ROOT / "docs/report"
 TABLES = [
@@ -17,6 +17,11 @@ TABLES = [
     ("cases", "totals.csv"),
     ("cases", "ratios.csv"),
     ("high", "linearised.csv"),
+    ("forces", "forces.csv"),
+    ("meshes", "pdg.csv"),
+    ("meshes", "proximity.csv"),
+    ("meshes", "triangles.csv"),
+    ("meshes", "narrow.csv"),
     ("stability", "stability.csv"),
     ("stiff", "stiff.csv"),
     ("leave-out", "bytes.csv"),

@@ -46,6 +46,21 @@ def build_parry(job):
     return target / "release/depth_parry"
 
 
+def build_pdg(job):
+    """Compiles FCL's part of the bench of meshes, and returns its path."""
+    source = ROOT / "benches/pdg/fcl.cpp"
+    return made(job.built / "pdg_fcl", [source], [*cxx(), *FLAGS, "-isystem", EIGEN, source, "-lfcl", "-lccd"])
+
+
+def build_triangles(job):
+    """Compiles the programs that tell the deepest pair of triangles: {library: path}, of those that are here."""
+    source = ROOT / "benches/pdg/triangles.cpp"
+    programs = {"FCL": (["-isystem", EIGEN], ["-lfcl", "-lccd"])}
+    if is_here(job, coal()):
+        programs["coal"] = (["-DCOAL", *(word for folder in coal()["includes"] for word in ("-isystem", folder))], coal()["link"])
+    return {name: made(job.built / f"triangles_{name}", [source], [*cxx(), *FLAGS, *flags, source, *link]) for name, (flags, link) in programs.items()}
+
+
 def build_growth(job):
     """Compiles `growth`, which has the library alone, and returns its path."""
     growth = compiled(job, "growth", CPP / "growth.cpp", [], [])

@@ -6,14 +6,14 @@ from pathlib import Path
 from report.job import ROOT, Job, run
 
 
-def bench(job, name, outputs):
+def bench(job, name, outputs, more=()):
     """Runs `cargo bench --bench NAME`, which writes these files, unless that has been done."""
 
     def work():
         job.say(f"building the bench {name}")
         words = ["bench", "--quiet", "--locked", "--package", "qdist-benches", "--bench", name]
         run([cargo(), *words, "--no-run"], cwd=ROOT)
-        run([cargo(), *words, "--", *(["--quick"] if job.quick else []), job.out], cwd=ROOT)
+        run([cargo(), *words, "--", *(["--quick"] if job.quick else []), *more, job.out], cwd=ROOT)
 
     job.step(name, outputs, work)
 

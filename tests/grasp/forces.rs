@@ -3,10 +3,10 @@
 use crate::common;
 use crate::grasp_common;
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{DefaultSettings, SolverStatus};
 use common::dice::Dice;
-use grasp_common::{contact_map, radii, random_contact, recorded, value, vector, wide};
+use grasp_common::socp::LeastForces;
+use grasp_common::{contact_map, random_contact, recorded, value, vector, wide};
 use qdist::grasp::{
     Contact, Contribution, ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces, Friction, Norm, Primitive,
     WrenchFrame, WrenchSet, wrenches,
@@ -23,43 +23,7 @@ fn reference(
     norm: Norm,
     external: &Vector<f64, 6>,
 ) -> Option<(f64, f64)> {
-    // Unknowns: the size, and per contact (f1, x) with |x| <= f1, where the force is cap (f1, mu x1, mu x2, mus x3).
-    let m = contacts.len();
-    let n = 1 + 4 * m;
-    let unit = |at: usize, x: f64| (0..n).map(|j| if j == at { x } else { 0.0 }).collect::<Vec<f64>>();
-    let size = external.amax();
-    let mut rows = vec![vec![0.0; n]; 6];
-    let mut b = vec![0.0; 6];
-    for (i, c) in contacts.iter().enumerate() {
-        let (map, r) = (contact_map(c, frame), radii(c, frame));
-        for j in 0..4 {
-            let column = map[j] * c.force_cap() * if j == 0 { 1.0 } else { r[j - 1] };
-            (0..6).for_each(|k| rows[k][1 + 4 * i + j] = column[k]);
-        }
-    }
-    for k in 0..6 {
-        let scale = rows[k].iter().fold(0.0f64, |s, x| s.max(x.abs()));
-        let scale = if scale > 0.0 { scale } else { 1.0 };
-        rows[k].iter_mut().for_each(|x| *x /= scale);
-        b[k] = -external[k] / size / scale;
-    }
-    let mut cones = vec![SupportedConeT::ZeroConeT(6)];
-    match norm {
-        Norm::LInf => {
-            rows.extend((0..m).map(|i| unit(1 + 4 * i, 1.0)));
-            cones.push(SupportedConeT::NonnegativeConeT(m));
-        }
-        Norm::L1 => {
-            rows.push((0..n).map(|j| if j % 4 == 1 { 1.0 } else { 0.0 }).collect());
-            cones.push(SupportedConeT::NonnegativeConeT(1));
-        }
-    }
-    rows[6..].iter_mut().for_each(|row| row[0] = -1.0);
-    for i in 0..m {
-        rows.extend((0..4).map(|j| unit(1 + 4 * i + j, -1.0)));
-        cones.push(SupportedConeT::SecondOrderConeT(4));
-    }
-    b.resize(rows.len(), 0.0);
+    let program = LeastForces::new(contacts, frame, norm, external);
     let settings = DefaultSettings {
         verbose: false,
         tol_gap_abs: 1e-13,
@@ -67,13 +31,13 @@ fn reference(
         tol_feas: 1e-12,
         ..DefaultSettings::default()
     };
-    let a = CscMatrix::from(&rows);
-    let mut solver = DefaultSolver::new(&CscMatrix::zeros((n, n)), &unit(0, 1.0), &a, &b, &cones, settings).unwrap();
-    solver.solve();
+    let solver = program.solved(settings);
     let found = &solver.solution;
     match found.status {
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => None,
-        SolverStatus::Solved | SolverStatus::AlmostSolved => Some((found.obj_val * size, found.obj_val_dual * size)),
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {
+            Some((found.obj_val * program.unit, found.obj_val_dual * program.unit))
+        }
         // It gives up.
         _ => Some((f64::NAN, f64::NAN)),
     }

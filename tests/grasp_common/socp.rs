@@ -2,9 +2,9 @@
 //! functions.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
+use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 use qdist::Vector;
-use qdist::grasp::{HandContact, Norm, WrenchFrame};
+use qdist::grasp::{Contact, HandContact, Norm, WrenchFrame};
 
 use super::{contact_map, radii};
 
@@ -86,4 +86,70 @@ pub fn ray(
     let u: Vector<f64, 6> = Vector::from_fn(|i, _| solution.z[i]);
     let u = if u.dot(q) < 0.0 { -u } else { u };
     Some((solution.x[0], u.normalize()))
+}
+
+/// The least contact forces against an external wrench. Unknowns: the size, and per contact (f1, x) with |x| <= f1, where the force is cap (f1, mu x1, mu x2, mus x3).
+/// The six equations of equilibrium come first, each divided by its largest coefficient; the objective is the size, in units of `unit`.
+pub struct LeastForces {
+    rows: Vec<Vec<f64>>,
+    b: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+    pub unit: f64,
+}
+
+impl LeastForces {
+    pub fn new(contacts: &[Contact<f64>], frame: &WrenchFrame<f64>, norm: Norm, external: &Vector<f64, 6>) -> Self {
+        let m = contacts.len();
+        let n = 1 + 4 * m;
+        let single = |at: usize, x: f64| (0..n).map(|j| if j == at { x } else { 0.0 }).collect::<Vec<f64>>();
+        let unit = external.amax();
+        let mut rows = vec![vec![0.0; n]; 6];
+        let mut b = vec![0.0; 6];
+        for (i, c) in contacts.iter().enumerate() {
+            let (map, r) = (contact_map(c, frame), radii(c, frame));
+            for j in 0..4 {
+                let column = map[j] * c.force_cap() * if j == 0 { 1.0 } else { r[j - 1] };
+                (0..6).for_each(|k| rows[k][1 + 4 * i + j] = column[k]);
+            }
+        }
+        for k in 0..6 {
+            let scale = rows[k].iter().fold(0.0f64, |s, x| s.max(x.abs()));
+            let scale = if scale > 0.0 { scale } else { 1.0 };
+            rows[k].iter_mut().for_each(|x| *x /= scale);
+            b[k] = -external[k] / unit / scale;
+        }
+        let mut cones = vec![SupportedConeT::ZeroConeT(6)];
+        match norm {
+            Norm::LInf => {
+                rows.extend((0..m).map(|i| single(1 + 4 * i, 1.0)));
+                cones.push(SupportedConeT::NonnegativeConeT(m));
+            }
+            Norm::L1 => {
+                rows.push((0..n).map(|j| if j % 4 == 1 { 1.0 } else { 0.0 }).collect());
+                cones.push(SupportedConeT::NonnegativeConeT(1));
+            }
+        }
+        rows[6..].iter_mut().for_each(|row| row[0] = -1.0);
+        for i in 0..m {
+            rows.extend((0..4).map(|j| single(1 + 4 * i + j, -1.0)));
+            cones.push(SupportedConeT::SecondOrderConeT(4));
+        }
+        b.resize(rows.len(), 0.0);
+        Self { rows, b, cones, unit }
+    }
+
+    pub fn solved(&self, settings: DefaultSettings<f64>) -> DefaultSolver<f64> {
+        let n = self.rows[0].len();
+        let cost: Vec<f64> = (0..n).map(|j| if j == 0 { 1.0 } else { 0.0 }).collect();
+        let (p, a) = (CscMatrix::zeros((n, n)), CscMatrix::from(&self.rows));
+        let mut solver = DefaultSolver::new(&p, &cost, &a, &self.b, &self.cones, settings).unwrap();
+        solver.solve();
+        solver
+    }
+
+    /// How far from equilibrium, in units of `unit`: the root of the sum of squares of the equations' errors.
+    pub fn residual(&self, x: &[f64]) -> f64 {
+        let error = |(row, b): (&Vec<f64>, &f64)| row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>() - b;
+        self.rows[..6].iter().zip(&self.b).map(error).map(|e| e * e).sum::<f64>().sqrt()
+    }
 }
