@@ -13,7 +13,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 
-const OURS: [f64; 6] = [0.3, 1e-1, 1e-2, 1e-3, 1e-6, 1e-9];
+const OURS: [f64; 7] = [0.3, 1e-1, 1e-2, 1e-3, 1e-6, 1e-9, 1e-11];
 const THEIRS: [f64; 5] = [1e-1, 1e-2, 1e-4, 1e-8, 1e-10];
 const ROUNDS: usize = 5;
 

@@ -27,6 +27,7 @@ TABLES = [
     ("leave-out", "bytes.csv"),
     ("leave-out", "work.csv"),
     ("growth", "growth.csv"),
+    ("growth", "triangles.csv"),
 ]
 
 

@@ -158,6 +158,20 @@ std::shared_ptr<Pair> hulls(Dice &dice, uint32_t count) {
     return pair;
 }
 
+Query preparation(Dice &dice, uint32_t count) {
+    const auto points = std::make_shared<std::vector<double>>();
+    for (uint32_t i = 0; i < count; ++i)
+        for (const double x : dice.direction(3)) points->push_back(x);
+    const auto workspace = std::make_shared<std::vector<uint32_t>>(QDIST_HULL_LARGE_WORKSPACE_LEN(count));
+    const auto graph = std::make_shared<std::vector<uint32_t>>(QDIST_HULL_LARGE_GRAPH_LEN(count));
+    return [=](Used &used) {
+        qdist_hull_large_f64 hull;
+        must(qdist_hull_large_prepare_f64(&hull, workspace->data(), static_cast<uint32_t>(workspace->size()), points->data(), count, nullptr, nullptr, graph->data(),
+                                          static_cast<uint32_t>(graph->size())));
+        used.bytes += 8.0 * static_cast<double>(points->size()) + 4.0 * static_cast<double>(workspace->size() + graph->size());
+    };
+}
+
 Query depth_of(std::shared_ptr<Pair> pair, double relative) {
     static Solver solver(3, 2048, 4096);
     return [pair, relative](Used &used) {
@@ -270,6 +284,8 @@ std::vector<Line> lines(uint32_t largest) {
         put("1/tolerance, ellipsoid in 4-D", 1 / relative, 1, [=](Dice &) { return solved(ellipsoid_in(4), 4, relative); });
     for (const uint32_t count : {8, 30, 100, 300, 1000, 3000, 10000, 30000, 100000})
         if (count <= largest) put("vertices of a hull", count, count > 5000 ? 2 : 5, [=](Dice &dice) { return depth_of(hulls(dice, count), 1e-6); });
+    for (const uint32_t count : {8, 30, 100, 300, 1000, 3000, 10000, 30000, 100000})
+        if (count <= largest) put("preparation of a hull", count, 1, [=](Dice &dice) { return preparation(dice, count); });
     for (const uint32_t n : {2, 3, 4, 5, 6}) put("dimension", n, 1, [=](Dice &) { return solved(ellipsoid_in(n), n, 1e-1); });
     for (const uint32_t count : {3, 4, 5, 6, 8}) put("contacts of a grasp", count, 3, [=](Dice &dice) { return solved(grasp(dice, count), 6, 3e-2); });
     for (const uint32_t count : {8, 32, 128, 512, 2048}) put("vertices of Q", count, 2, [=](Dice &dice) { return solved(vertices_of_q(dice, count), 3, 1e-4); });

@@ -4,8 +4,9 @@ import csv
 import io
 import math
 import shutil
+import time
 
-from report import build, style
+from report import build, rust, style
 from report.job import run
 from report.parts.depth import total
 
@@ -14,7 +15,7 @@ COLUMNS = ["series", "size", "instructions", "ns", "calls", "vertices", "facets"
 MEASURES = {
     "instructions": ("instructions", "#0072B2", "o"),
     "ns": ("time in ns", "#D55E00", "s"),
-    "calls": ("support calls", "#009E73", "^"),
+    "calls": ("support calls, or queries of meshes", "#009E73", "^"),
     "facets": ("facets", "#CC79A7", "D"),
     "bytes": ("bytes", "#000000", "v"),
 }
@@ -24,6 +25,9 @@ SERIES = {
     "1/tolerance, cylinders": "1 / relative tolerance",
     "1/tolerance, ellipsoid in 4-D": "1 / relative tolerance",
     "vertices of a hull": "vertices",
+    "preparation of a hull": "vertices",
+    "triangles of meshes": "triangles of each",
+    "meshes read and cut into pieces": "triangles of each",
     "dimension": "dimension n",
     "contacts of a grasp": "contacts",
     "vertices of Q": "vertices",
@@ -34,14 +38,46 @@ def measure(job):
     program = build.build_growth(job)
     largest = "10000" if job.quick else "100000"
     job.step("growth", ["growth.csv"], lambda: growth(job, program, largest))
+    job.step("triangles", ["triangles.csv"], lambda: triangles(job))
 
 
 def growth(job, program, largest):
     rows = list(csv.DictReader(io.StringIO(run([program, "times", 3 if job.quick else 15, largest]))))
-    counts = counted(job, program, largest)
+    counts = counted(job, program, "1000" if job.quick else "10000")
     for row in rows:
         row["instructions"] = counts.get((row["series"], row["size"]), "")
     job.write_rows("growth.csv", rows, COLUMNS)
+
+
+def triangles(job):
+    """Two tori through each other: the query alone, and what comes before it."""
+    program = rust.program(job)
+    rows = []
+    for around in (22, 45, 89) if job.quick else (22, 45, 89, 179, 316, 447):
+        mesh = job.path("torus.obj")
+        write_torus(mesh, around)
+        begin = time.monotonic()
+        said = run([program, "mesh", mesh, mesh, "--pose", "0.9,0.3,0.3,0.1,1.0,0.2,0.3", "--metric", "disp", "--csv"])
+        whole = 1e9 * (time.monotonic() - begin)
+        (row,) = csv.DictReader(said.splitlines())
+        mesh.unlink()
+        size = 2 * around * around
+        rows.append({"series": "triangles of meshes", "size": size, "ns": row["ns"], "calls": int(row["collision_queries"]) + int(row["contact_queries"])})
+        rows.append({"series": "meshes read and cut into pieces", "size": size, "ns": round(whole - float(row["ns"]))})
+    job.write_rows("triangles.csv", rows, COLUMNS)
+
+
+def write_torus(path, around):
+    """`around` squares, two triangles each, around either circle."""
+    vertices, faces = [], []
+    for i in range(around):
+        for j in range(around):
+            a, b = (2 * math.pi * k / around for k in (i, j))
+            radius = 1 + 0.35 * math.cos(b)
+            vertices.append(f"v {radius * math.cos(a)!r} {radius * math.sin(a)!r} {0.35 * math.sin(b)!r}\n")
+            corner = lambda k, l: (i + k) % around * around + (j + l) % around + 1
+            faces.append(f"f {corner(0, 0)} {corner(1, 0)} {corner(1, 1)}\nf {corner(0, 0)} {corner(1, 1)} {corner(0, 1)}\n")
+    path.write_text("".join(vertices + faces))
 
 
 def counted(job, program, largest):
@@ -69,14 +105,14 @@ more vertices. Lines are powers fitted to the points, *y* = *c x^p*, and the tab
 
 
 def tell(job):
-    rows = job.rows("growth.csv")
+    rows = job.rows("growth.csv") + job.rows("triangles.csv")
     for row in rows:
         row.update({column: float(row[column] or "nan") for column in COLUMNS[1:]})
     names = [name for name in SERIES if any(row["series"] == name for row in rows)]
     fits = {(name, what): fitted([(row["size"], row[what]) for row in rows if row["series"] == name]) for name in names for what in MEASURES}
     draw(job, rows, names, fits)
     text = [INTRODUCTION, style.shown(job, "growth", "Work and memory against size, a panel a series", "Marks are measured, thin lines the fitted powers. A flat line costs nothing more; the steeper, the worse. Points that leave their line are growth that is no power.")]
-    cell = lambda fit: "gap" if fit is None else f"{fit[0]:.2f}"
+    cell = lambda fit: "gap" if fit is None else f"{fit[0]:.2f}".replace("-0.00", "0.00")
     lines = [[name, *(cell(fits[name, what]) for what in MEASURES)] for name in names]
     text.append(style.table(["exponent over", *(label for label, _, _ in MEASURES.values())], lines))
     text.append("\nThe largest of each series:\n")

@@ -66,7 +66,7 @@ def tell(job):
     queries = len({row["query"] for row in rows if row["group"] in groups})
     text = [INTRODUCTION.format(queries=queries, groups=len(groups), data=data)]
     draw(job, rows, groups)
-    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors (medians are 0 nearly everywhere), and what is below 0.01 % is drawn there. FCL and coal tell the deepest pair of triangles that meet, which is no depth of the bodies: it has no bound, and here it is below the least motion that frees them by the factor in the table."))
+    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors, since most are 0, and what is below 0.01 % is drawn there. FCL and coal tell the deepest pair of triangles that meet, which is no depth of the bodies: it has no bound, and here it is below the least motion that frees them by the factor in the table."))
     text.append(summary(rows, groups))
     text.append(deepest(job))
     text.append(passages(job))
