@@ -185,7 +185,7 @@ ccd_support_fn prepare(CcdShape &s, const Shape &shape) {
 
 using CcdPenetration = int (*)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
 
-template <CcdPenetration penetration>
+template <CcdPenetration penetration, int (*intersect)(const void *, const void *, const ccd_t *)>
 class LibccdQuery final : public Query {
 public:
     LibccdQuery(const Case &c, double tolerance) {
@@ -204,6 +204,12 @@ public:
     void run(Answer &answer) override {
         ccd_real_t depth;
         ccd_vec3_t direction, position;
+        if (only_overlap_) {
+            const bool yes = intersect(&a_, &b_, &ccd_) != 0;
+            answer.set_outcome(yes ? "ok" : "no_collision");
+            if (yes) answer.depth = 1;
+            return;
+        }
         const int code = penetration(&a_, &b_, &ccd_, &depth, &direction, &position);
         if (code == 0)  // libccd: "if obj2 is translated by depth in direction dir, objects will have touching contact"
             set_answer(answer, depth, direction.v[0], direction.v[1], direction.v[2]);
@@ -213,7 +219,10 @@ public:
             answer.set_outcome("exception");  // -2: out of memory
     }
 
+    bool only_overlap() override { return only_overlap_ = true; }
+
 private:
+    bool only_overlap_ = false;
     ccd_t ccd_;
     CcdShape a_, b_;
 };
@@ -279,8 +288,18 @@ public:
             answer.set_outcome("no_collision");
             return;
         }
+        if (!request_.enable_contact) {
+            answer.set_outcome("ok");
+            answer.depth = 1;
+            return;
+        }
         const fcl::Contactd &contact = result.getContact(0);  // normal: from object 1 to object 2
         set_answer(answer, contact.penetration_depth, contact.normal[0], contact.normal[1], contact.normal[2]);
+    }
+
+    bool only_overlap() override {
+        request_.enable_contact = false;
+        return true;
     }
 
 private:
@@ -316,10 +335,10 @@ private:
 }  // namespace
 
 std::unique_ptr<Query> make_libccd_epa(const Case &c, double tolerance) {
-    return std::make_unique<LibccdQuery<ccdGJKPenetration>>(c, tolerance);
+    return std::make_unique<LibccdQuery<ccdGJKPenetration, ccdGJKIntersect>>(c, tolerance);
 }
 std::unique_ptr<Query> make_libccd_mpr(const Case &c, double tolerance) {
-    return std::make_unique<LibccdQuery<ccdMPRPenetration>>(c, tolerance);
+    return std::make_unique<LibccdQuery<ccdMPRPenetration, ccdMPRIntersect>>(c, tolerance);
 }
 std::unique_ptr<Query> make_fcl_libccd(const Case &c, double tolerance) { return std::make_unique<FclCollide>(c, tolerance); }
 std::unique_ptr<Query> make_fcl_signed(const Case &c, double tolerance) { return std::make_unique<FclSigned>(c, tolerance); }

@@ -25,6 +25,10 @@ class Query {
 public:
     virtual ~Query() = default;
     virtual void run(Answer &answer) = 0;
+    // From now on: do they overlap, and nothing else (the depth that is said means yes where it is positive). False: the solver has no such question.
+    virtual bool only_overlap() { return false; }
+    // From now on: begin at this normal, which was the answer a moment ago. False: the solver takes none.
+    virtual bool guess(const double *normal) { return static_cast<void>(normal), false; }
 };
 
 // A `tolerance` of 0 is the solver's default, or the author's advice where there is none. Any other is given to the setting that decides how near the answer

@@ -152,6 +152,19 @@ public:
         answer.facets = result.facets_used;
     }
 
+    // Which is the case as soon as d >= 0 or d < 0 is certain.
+    bool only_overlap() override {
+        options_.use_threshold = 1;
+        options_.threshold = 0;
+        return true;
+    }
+
+    bool guess(const double *normal) override {
+        options_.use_guess = 1;
+        std::copy_n(normal, 3, options_.guess);
+        return true;
+    }
+
 private:
     // Lower case, and nothing that would break a column of the table.
     static void set_word(Answer &answer, const char *prefix, const char *word) {

@@ -75,6 +75,11 @@ public:
             answer.set_outcome("no_collision");
             return;
         }
+        if (!request_.enable_contact) {
+            answer.set_outcome("ok");
+            answer.depth = 1;
+            return;
+        }
         const coal::Contact &contact = result_.getContact(0);  // the normal is one from A to B; the depth is a signed distance
         const double depth = -contact.penetration_depth;
         if (depth == std::numeric_limits<double>::max()) {  // how coal says that EPA has failed
@@ -84,6 +89,12 @@ public:
         answer.set_outcome(std::isfinite(depth) ? "ok" : "nan");
         answer.depth = depth;
         for (int i = 0; i < 3; ++i) answer.normal[i] = contact.normal[i];
+    }
+
+    bool only_overlap() override {
+        request_.enable_contact = false;
+        request_.security_margin = 0;
+        return true;
     }
 
 private:

@@ -7,6 +7,9 @@
 //     depth times ROUNDS CASES SOLVER:TOLERANCE...      nanoseconds a query of each: the median over rounds, for each case
 //     depth count CASES SOLVER:TOLERANCE...             under callgrind: three dumps a solver, of 1, 1 and 3 rounds over all cases; SOLVER,CASES
 //
+// `--overlap`: solvers are asked whether the bodies overlap, and nothing else. `--guess`: every case but the first is a frame that follows the one before, whose normal
+// solvers that take one begin at. Solvers that know no such question are left out.
+//
 // A tolerance of 0 is the solver's own. Cases that a solver does not answer are left out of its times and loops; whoever crashes or hangs takes the program along, so
 // `answers` is run by a parent that notices, and is told which cases to leave out for whom (`--without SOLVER:TOLERANCE=CASE,CASE`).
 
@@ -73,6 +76,23 @@ std::unique_ptr<Query> made(const Asked &asked, const Case &c) {
     }
 }
 
+bool overlap = false, follow = false;
+
+// All queries of a solver; `nullptr` as above.
+std::vector<std::unique_ptr<Query>> made(const Asked &asked, const std::vector<Case> &cases) {
+    std::vector<std::unique_ptr<Query>> queries;
+    Answer before;
+    for (const Case &c : cases) {
+        auto query = made(asked, c);
+        if (query && overlap && !query->only_overlap()) query.reset();
+        if (query && follow && !std::isnan(before.normal[0]) && !query->guess(before.normal)) query.reset();
+        before = Answer();
+        if (query && follow) query->run(before);
+        queries.push_back(std::move(query));
+    }
+    return queries;
+}
+
 std::string mode;
 
 // The floating-point environment that is asked for, while it lives. (Bodies are made before, numbers printed behind.)
@@ -95,12 +115,15 @@ struct Mode {
 
 void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
     std::printf("case,solver,outcome,lower,upper,depth,nx,ny,nz\n");
-    for (const Asked &asked : all)
-        for (const Case &c : cases) {
+    for (const Asked &asked : all) {
+        const auto queries = overlap || follow ? made(asked, cases) : std::vector<std::unique_ptr<Query>>();
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            const Case &c = cases[i];
             Answer answer;
             answer.set_outcome("refused");
             try {
-                if (const auto query = made(asked, c)) {
+                const auto alone = queries.empty() ? made(asked, c) : nullptr;
+                if (Query *query = queries.empty() ? alone.get() : queries[i].get()) {
                     const Mode held;
                     query->run(answer);
                 }
@@ -112,6 +135,7 @@ void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
                         answer.lower, answer.upper, answer.depth, answer.normal[0], answer.normal[1], answer.normal[2]);
             std::fflush(stdout);
         }
+    }
 }
 
 void used(const std::vector<Case> &cases, const std::vector<Asked> &all) {
@@ -140,11 +164,14 @@ double nanoseconds(Query &query, int runs) {
 void times(int rounds, const std::vector<Case> &cases, const std::vector<Asked> &all) {
     constexpr double BATCH_NS = 30e3;
     std::printf("case,solver,ns\n");
-    for (const Case &c : cases) {
-        std::vector<std::unique_ptr<Query>> queries;
+    std::vector<std::vector<std::unique_ptr<Query>>> of_solver;
+    for (const Asked &asked : all) of_solver.push_back(made(asked, cases));
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Case &c = cases[i];
+        std::vector<Query *> queries;
         std::vector<int> runs;
-        for (const Asked &asked : all) {
-            queries.push_back(made(asked, c));
+        for (const auto &made : of_solver) {
+            queries.push_back(made[i].get());
             if (queries.back()) nanoseconds(*queries.back(), 2);
             runs.push_back(queries.back() ? 1 + static_cast<int>(BATCH_NS / nanoseconds(*queries.back(), 2)) : 0);
         }
@@ -164,9 +191,8 @@ void times(int rounds, const std::vector<Case> &cases, const std::vector<Asked> 
 void count(const std::vector<Case> &cases, const std::vector<Asked> &all) {
     std::printf("solver,cases\n");
     for (const Asked &asked : all) {
-        std::vector<std::unique_ptr<Query>> queries;
-        for (const Case &c : cases)
-            if (auto query = made(asked, c)) queries.push_back(std::move(query));
+        std::vector<std::unique_ptr<Query>> queries = made(asked, cases);
+        queries.erase(std::remove(queries.begin(), queries.end(), nullptr), queries.end());
         Answer answer;
         for (const int rounds : {1, 1, 3}) {  // (the first one warms up)
             CALLGRIND_ZERO_STATS;
@@ -198,6 +224,10 @@ int main(int argc, char **argv) try {
             leave_out(argv[++at]);
         else if (std::strcmp(argv[at], "--mode") == 0 && at + 1 < argc)
             mode = argv[++at];
+        else if (std::strcmp(argv[at], "--overlap") == 0)
+            overlap = true;
+        else if (std::strcmp(argv[at], "--guess") == 0)
+            follow = true;
         else
             all.push_back(asked(argv[at]));
     }

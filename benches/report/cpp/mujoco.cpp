@@ -79,13 +79,14 @@ public:
 
     void run(Answer &answer) override {
         mjtNum ends[6];
-        const mjtNum distance = mj_geomDistance(model_.get(), data_.get(), 0, 1, FAR, ends);
-        if (!(distance < FAR)) {
+        const mjtNum distance = mj_geomDistance(model_.get(), data_.get(), 0, 1, far_, only_overlap_ ? nullptr : ends);
+        if (!(distance < far_)) {
             answer.set_outcome(std::isnan(distance) ? "nan" : "no_collision");
             return;
         }
         answer.set_outcome("ok");
         answer.depth = -distance;
+        if (only_overlap_) return;
         // From the end on B to the end on A it is depth * normal.
         double normal[3], length = 0;
         for (int i = 0; i < 3; ++i) {
@@ -94,6 +95,12 @@ public:
         }
         length = std::copysign(std::sqrt(length), flipped_ ? distance : -distance);
         for (int i = 0; i < 3; ++i) answer.normal[i] = normal[i] / length;
+    }
+
+    // It looks no farther than it is told to.
+    bool only_overlap() override {
+        far_ = 0;
+        return only_overlap_ = true;
     }
 
 private:
@@ -116,7 +123,8 @@ private:
         mju_addTo3(position, moved);
     }
 
-    bool flipped_;
+    bool flipped_, only_overlap_ = false;
+    mjtNum far_ = FAR;
     std::unique_ptr<mjModel, Deleter> model_;
     std::unique_ptr<mjData, Deleter> data_;
 };

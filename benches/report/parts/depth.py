@@ -6,6 +6,7 @@ import subprocess
 
 from report import build, cases, style
 from report.job import run
+from report.parts import scenes
 
 # Of qdist: without the absolute tolerance that `compare` asks for.
 DEFAULT = {"qdist": "1e-6", "qdist f32": "1e-4"}
@@ -82,7 +83,36 @@ def measure(job):
         output = f"{family}.csv"
         job.step(family, [output], lambda: family_rows(job, family, output, columns, (program, parry, oracle), asked))
         rows += job.rows(output)
+    measured = Measured(job, program, oracle, here)
+    for scene in (scenes.mixed, scenes.frames):
+        output = f"{scene.__name__}.csv"
+        job.step(scene.__name__, [output], lambda: job.write_rows(output, scene(job, measured), columns))
+        rows += job.rows(output)
     job.write_rows("depth.csv", rows, columns)
+
+
+class Measured:
+    """What scenes are measured with."""
+
+    def __init__(self, job, program, oracle, here):
+        self.job, self.program, self.oracle, self.here = job, program, oracle, here
+
+    def truth(self, file, *words):
+        return {row["case"]: row for row in parsed(run([self.oracle, file, *words]))}
+
+    def answers(self, file, asked, flags):
+        return answered(self.job, self.program, file, asked, flags)
+
+    def without(self, truth, said):
+        """Who hangs or aborts at a case is not asked about it again."""
+        lost = {solver: [case for case in truth if case not in answers] for solver, answers in said.items()}
+        return [word for solver, list_ in lost.items() if list_ for word in ("--without", f"{solver}={','.join(list_)}")]
+
+    def times(self, file, asked, without, flags):
+        return timed(self.job, self.program, file, asked, without, flags)
+
+    def counts(self, file, asked, without, flags):
+        return counted(self.job, self.program, file, asked, without, flags)
 
 
 def family_rows(job, family, output, columns, programs, asked):
@@ -141,12 +171,12 @@ def error(said, truth):
     return off / abs(upper)
 
 
-def answered(job, program, file, asked):
+def answered(job, program, file, asked, flags=()):
     """What each solver says of each case: in processes of their own, since some abort or hang."""
     answers = {}
     for solver in asked:
         try:
-            out = subprocess.run([program, "answers", file, solver], capture_output=True, text=True, timeout=120).stdout
+            out = subprocess.run([program, "answers", file, solver, *flags], capture_output=True, text=True, timeout=120).stdout
         except subprocess.TimeoutExpired as late:
             out = (late.stdout or b"").decode()
         answers[solver] = {row["case"]: row for row in parsed(out) if len(row) == 9}
@@ -155,10 +185,10 @@ def answered(job, program, file, asked):
     return answers
 
 
-def timed(job, program, file, asked, without):
-    rounds = 5 if job.quick else 15
+def timed(job, program, file, asked, without, flags=()):
+    rounds = 5 if job.quick or flags else 15
     spent = {}
-    for row in parsed(run([program, "times", rounds, file, *asked, *mine(without, asked)])):
+    for row in parsed(run([program, "times", rounds, file, *asked, *mine(without, asked), *flags])):
         spent.setdefault(row["solver"], []).append(float(row["ns"]))
     return spent
 
@@ -169,7 +199,7 @@ def mine(without, asked):
     return [word for pair in pairs if pair[1].split("=")[0] in asked for word in pair]
 
 
-def counted(job, program, file, asked, without):
+def counted(job, program, file, asked, without, flags=()):
     """Instructions a query, by callgrind."""
     if not shutil.which("valgrind"):
         return {}
@@ -177,7 +207,7 @@ def counted(job, program, file, asked, without):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/c"]
-    said = parsed(run([*command, program, "count", file, *asked, *mine(without, asked)]))
+    said = parsed(run([*command, program, "count", file, *asked, *mine(without, asked), *flags]))
     counts = {}
     for k, row in enumerate(said):
         _, once, thrice = (total(folder / f"c.{3 * k + dump}") for dump in (1, 2, 3))
@@ -198,13 +228,15 @@ RIGHT = {"error": 1e-5, "failed": 0.0}
 
 
 def tell(job):
-    rows = [row for row in job.rows("depth.csv") if row["median_error"]]
+    every = [row for row in job.rows("depth.csv") if row["median_error"]]
+    rows = [row for row in every if row["family"] not in scenes.SCENES]
     text = [INTRODUCTION]
     for axis, name, unit in [("instructions", "instructions", "instructions a query"), ("median_ns", "time", "microseconds a query")]:
         if any(row[axis] for row in rows):
             draw(job, rows, axis, name, unit)
             text.append(style.shown(job, f"error-{name}", f"Error of the depth against {unit}, a panel a family of bodies", SEE[name]))
     text.append(beside(rows))
+    text.append(scenes.tell(every))
     text.append(overhead(job))
     text.append("Run it: `./x report PART=depth OUT=dir`, or the table alone: `./x bench-depth OUT=dir` (`dir/depth.csv`).\n")
     return "\n".join(text)
