@@ -69,10 +69,10 @@ def publish(out, parts, folder, tables):
     for file in folder.iterdir():
         file.unlink()
     text = (Path(out) / "report.md").read_text()
-    for file in sorted(set(re.findall(r"\]\(([\w-]+/[\w-]+)\.svg\)", text))):
+    for file, ending in sorted(set(re.findall(r"\]\(([\w-]+/[\w-]+)\.(svg|png)\)", text))):
         name = file.replace("/", "-") + ".png"
         shutil.copyfile(Path(out) / f"{file}.png", folder / name)
-        text = text.replace(f"]({file}.svg)", f"]({name})")
+        text = text.replace(f"]({file}.{ending})", f"]({name})")
     for part, table in tables:
         if part in parts and (Path(out) / part / table).exists():
             shutil.copyfile(Path(out) / part / table, folder / table)

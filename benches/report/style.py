@@ -43,10 +43,11 @@ plt.rcParams.update(
 )
 
 
-def save(job, figure, name):
-    """NAME.svg and NAME.png of a part, and the Markdown that shows it."""
-    figure.savefig(job.path(f"{name}.svg"), metadata={"Date": None})
-    figure.savefig(job.path(f"{name}.png"), dpi=110)
+def save(job, figure, name, dots=110, alone=False):
+    """NAME.svg and NAME.png of a part; `alone`: the latter only, for thousands of polygons."""
+    if not alone:
+        figure.savefig(job.path(f"{name}.svg"), metadata={"Date": None})
+    figure.savefig(job.path(f"{name}.png"), dpi=dots)
     plt.close(figure)
 
 
@@ -60,6 +61,6 @@ def decades(axis):
     axis.set_minor_formatter(NullFormatter())
 
 
-def shown(job, name, what, sentence):
+def shown(job, name, what, sentence, ending="svg"):
     """A picture in the page: what it is, for those who cannot see it, and the sentence that says what to see."""
-    return f"![{what}]({job.part}/{name}.svg)\n\n*{sentence}*\n"
+    return f"![{what}]({job.part}/{name}.{ending})\n\n*{sentence}*\n"

@@ -6,7 +6,7 @@ import math
 import statistics
 from decimal import Decimal
 
-from report import build, cases, rust
+from report import build, cases, rust, tubes
 from report.job import run
 from report.parts.depth import parsed
 
@@ -71,8 +71,7 @@ def asked(job, program, extreme, value, queries):
     entries = []
     for k, (a, b, pose, _, _) in enumerate(queries):
         for name, (vertices, triangles) in (("a", a), ("b", b)):
-            lines = [f"v {' '.join(map(repr, v))}" for v in vertices] + [f"f {' '.join(str(i + 1) for i in t)}" for t in triangles]
-            job.path(f"{name}{k}.obj").write_text("\n".join(lines) + "\n")
+            tubes.write(job.path(f"{name}{k}.obj"), vertices, triangles)
         entries.append({"id": str(k), "A": f"a{k}.obj", "B": f"b{k}.obj", "pose0": {"q_wxyz": pose[0], "t": pose[1]}})
     file = job.path("meshes.json")
     file.write_text(json.dumps({"queries": entries}))

@@ -6,7 +6,7 @@ import math
 import shutil
 import time
 
-from report import build, rust, style
+from report import build, rust, style, tubes
 from report.job import run
 from report.parts.depth import total
 
@@ -55,7 +55,7 @@ def triangles(job):
     rows = []
     for around in (22, 45, 89) if job.quick else (22, 45, 89, 179, 316, 447):
         mesh = job.path("torus.obj")
-        write_torus(mesh, around)
+        tubes.write(mesh, *tubes.ring(around))
         begin = time.monotonic()
         said = run([program, "mesh", mesh, mesh, "--pose", "0.9,0.3,0.3,0.1,1.0,0.2,0.3", "--metric", "disp", "--csv"])
         whole = 1e9 * (time.monotonic() - begin)
@@ -65,19 +65,6 @@ def triangles(job):
         rows.append({"series": "triangles of meshes", "size": size, "ns": row["ns"], "calls": int(row["collision_queries"]) + int(row["contact_queries"])})
         rows.append({"series": "meshes read and cut into pieces", "size": size, "ns": round(whole - float(row["ns"]))})
     job.write_rows("triangles.csv", rows, COLUMNS)
-
-
-def write_torus(path, around):
-    """`around` squares, two triangles each, around either circle."""
-    vertices, faces = [], []
-    for i in range(around):
-        for j in range(around):
-            a, b = (2 * math.pi * k / around for k in (i, j))
-            radius = 1 + 0.35 * math.cos(b)
-            vertices.append(f"v {radius * math.cos(a)!r} {radius * math.sin(a)!r} {0.35 * math.sin(b)!r}\n")
-            corner = lambda k, l: (i + k) % around * around + (j + l) % around + 1
-            faces.append(f"f {corner(0, 0)} {corner(1, 0)} {corner(1, 1)}\nf {corner(0, 0)} {corner(1, 1)} {corner(0, 1)}\n")
-    path.write_text("".join(vertices + faces))
 
 
 def counted(job, program, largest):

@@ -6,7 +6,7 @@ import math
 import statistics
 import xml.etree.ElementTree
 
-from report import rust, style
+from report import rust, style, tubes
 from report.job import run
 from report.parts.high import DQ, duration, finest, split
 
@@ -29,8 +29,7 @@ ZHANG = [
 def measure(job):
     rust.bench(rust.other(job, "high"), "dq", DQ)
     job.step("figure 3", ["sets.csv"], lambda: sets(job))
-    if not job.quick:
-        rust.bench(job, "pdg", ["pdg.csv", "warm.csv"])
+    job.step("figures 6 to 8", ["freed.csv"], lambda: freed(job))
 
 
 # The sets Q of rows a1 to a5, in the space of W^a: (f_x, f_y, m_z).
@@ -62,6 +61,26 @@ def sets(job):
     job.write_rows("sets.csv", rows, list(rows[0]))
 
 
+# Pairs that the report makes itself: (name, A, B, pose, metric).
+FREED = [
+    ("an L in a torus knot", tubes.l_shape, tubes.knot, "1,0,0,0,0.4,-0.6,-0.4", "sigma"),
+    ("two rings", tubes.ring, tubes.ring, "0.9,0.3,0.3,0.1,1.0,0.2,0.3", "disp"),
+]
+
+
+def freed(job):
+    """Pictures of bodies that are freed, by the program."""
+    program = rust.program(job)
+    rows = []
+    for k, (name, a, b, pose, metric) in enumerate(FREED):
+        files = [job.path(f"{k}{which}.obj") for which in "ab"]
+        for file, make in zip(files, (a, b)):
+            tubes.write(file, *make())
+        said = run([program, "mesh", *files, "--pose", pose, "--metric", metric, "--csv", "--picture", job.path(f"freed{k}")])
+        rows += [{"pair": name, **row} for row in csv.DictReader(said.splitlines())]
+    job.write_rows("freed.csv", rows, list(rows[0]))
+
+
 # ------------------------------------------------------------------------------------------------------------ the page
 
 INTRODUCTION = """## The papers, and ours beside them
@@ -77,6 +96,7 @@ def tell(job):
     text += ["### Zheng & Yamane, Fig. 3: W^a and the largest d Q in it\n", figure_3(job)]
     text += ["### Zheng & Yamane, Fig. 4: bounds and time against iterations\n", figure_4(job, high, rows)]
     text += ["### Zhang, Kim & Manocha, Table I: depth of meshes\n", zhang(job)]
+    text += ["### Zhang, Kim & Manocha, Figs. 6 to 8: before, on the way, after\n", figures_6_to_8(job)]
     text.append("Run it: `./x report PART=papers OUT=dir`; `qdist grasp --table1` prints the first table alone.\n")
     return "\n".join(text)
 
@@ -134,11 +154,11 @@ def draw_sets(job, rows):
     style.save(job, figure, "figure-3")
 
 
-def drawn(ax, file):
-    """The program's picture without its title and legend: polygons, lines and the names of the axes."""
+def drawn(ax, file, words=False):
+    """The program's picture: polygons, lines and the names of the axes; its title and legend with `words`."""
     for element in xml.etree.ElementTree.parse(file).getroot():
         kind, get = element.tag.rsplit("}")[-1], element.get
-        look = {"alpha": float(get("opacity", 1))}
+        look = {"alpha": float(get("opacity", 1)), "zorder": 1}  # (in the order of the file)
         if kind in ("polygon", "polyline"):
             points = [tuple(map(float, pair.split(","))) for pair in get("points").split()]
             x, y = zip(*points)
@@ -146,7 +166,7 @@ def drawn(ax, file):
                 ax.fill(x, y, color=get("fill"), linewidth=0, **look)
             else:
                 ax.plot(x, y, color=get("stroke"), linewidth=0.5 * float(get("stroke-width", 1)), **look)
-        elif kind == "text" and len(element.text.strip()) < 4:
+        elif kind == "text" and (words or len(element.text.strip()) < 4):
             ax.text(float(get("x")), float(get("y")), element.text.strip(), va="top", fontsize=9)
         elif kind == "circle":
             ax.plot(float(get("cx")), float(get("cy")), marker="o", markersize=3, color=get("fill"), **look)
@@ -198,9 +218,9 @@ def exponents(high):
 
 
 def zhang(job):
-    rows = job.rows("pdg.csv")
+    rows = rust.other(job, "meshes").rows("pdg.csv")
     if not rows:
-        return "A gap: depth of meshes is measured in the full report only, not in the quick one.\n"
+        return "A gap: the part `meshes` has not been measured.\n"
     lines = []
     for a, b, disp, sigma, groups in ZHANG:
         line = [a, b]
@@ -213,6 +233,23 @@ def zhang(job):
     head = ["A, triangles", "B, triangles", "DISP, paper", "ours", "width", "sigma, paper", "ours", "width"]
     text = style.table(head, lines, ["---", "---"] + ["---:"] * 6)
     return text + f"\n{MESHES}\n"
+
+
+def figures_6_to_8(job):
+    import matplotlib.pyplot as plt
+
+    rows = job.rows("freed.csv")
+    for k, row in enumerate(rows):
+        figure, ax = plt.subplots(figsize=(8, 7))
+        drawn(ax, next(job.path(f"freed{k}").glob("*.svg")), words=True)
+        ax.set_axis_off()
+        style.save(job, figure, f"freed-{k}", 90, alone=True)
+    shown = []
+    for k, row in enumerate(rows):
+        what = "DISP" if row["metric"] == "disp" else "object norm"
+        sentence = f"{row['pair'][0].upper()}{row['pair'][1:]}, by {what}: the bracket of its depth is {float(row['lower']):.4f} to {float(row['upper']):.4f}, found with {int(row['collision_queries']) + int(row['contact_queries'])} queries."
+        shown.append(style.shown(job, f"freed-{k}", f"{row['pair']}: before, on the way, after", sentence, "png"))
+    return "\n".join(shown) + "\nThe paper's models are not published: these are made by the report.\n"
 
 
 MESHES = """Means over queries, as in the paper; *width* is the median width of our brackets: the paper's answer is an upper bound alone. Its models are not published: ours are made to its descriptions,
