@@ -100,6 +100,7 @@ METHODS = {
     "/scan": ("the paper's, all pairs", "#D55E00", "^"),
     "/scan_sorted": ("the paper's, sorted", "#CC79A7", "v"),
 }
+SINGLE = "#000000"
 SHADES = {512: "#8FC4E8", 2048: "#3A93CC", 4096: "#0072B2", 8192: "#003F63"}
 PANELS = {
     "a1": "a1: Q a ball",
@@ -144,6 +145,11 @@ def draw_cases(job, rows):
                 curve = sorted((float(row["median_ns"]) / 1e6, max(width(row), LEAST)) for row in of if int(row["max_facets"]) == facets)
                 (line,) = ax.plot([p[0] for p in curve], [p[1] for p in curve], color=shade, marker=marker, markersize=4.5, linewidth=1.3)
                 handles[f"qdist, {facets:,} facets" if method == "" else name] = line
+        single = [row for row in rows if row["case"] == case and row["scalar"] == "f32"]
+        if single:
+            most = max(int(row["max_facets"]) for row in single)
+            curve = sorted((float(row["median_ns"]) / 1e6, max(width(row), LEAST)) for row in single if int(row["max_facets"]) == most)
+            (handles["single precision"],) = ax.plot(*zip(*curve), color=SINGLE, marker="s", markersize=4.5, linestyle="--", linewidth=1.3)
         least = max(min(width(row) for row in mine), LEAST)
         ax.set(xscale="log", yscale="log", title=PANELS[case], ylim=(least / 3, 0.3))
         style.decades(ax.xaxis)

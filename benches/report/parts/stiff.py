@@ -201,14 +201,18 @@ WORDS = {"beyond": "energy", "depth_jump": "jump of depth", "normal_jump": "jump
 
 
 def lost(rows):
-    lines = []
+    names = {"qdist": "in double precision", "qdist f32": f"in single precision, at a tolerance of {TOLERANCES['qdist f32']}"}
+    said = [f"{name}: {'; '.join(behind(rows, solver)) or 'nowhere in these scenes, but in last digits'}" for solver, name in names.items()]
+    return f"\n**Where we lose**, {'. '.join(said)}.\n"
+
+
+def behind(rows, solver):
+    """Where another solver, which answers always, is better by more than is seen."""
     for scene, hz in dict.fromkeys((row["scene"], row["hz"]) for row in rows):
         here = [row for row in rows if (row["scene"], row["hz"]) == (scene, hz)]
-        ours = next((row for row in here if row["solver"] == "qdist"), None)
+        ours = next((row for row in here if row["solver"] == solver), None)
         others = [row for row in here if row["solver"] != EXACT and not row["solver"].startswith("qdist") and not row["silent"] and not row["ended"]]
         for what, least in SEEN.items():
             best = min(others, key=lambda row: row[what] if not math.isnan(row[what]) else math.inf, default=None)
             if ours and best and ours[what] > max(least, LOST * best[what]):
-                lines.append(f"{scene} at {int(hz) // 1000} kHz ({WORDS[what]} {ours[what]:.1e}, {best['solver']} {best[what]:.1e})")
-    where = "; ".join(lines) if lines else "nowhere in these scenes, but in last digits"
-    return f"\n**Where we lose**, in double precision: {where}. Single precision jumps by what its tolerance of {TOLERANCES['qdist f32']} leaves open.\n"
+                yield f"{scene} at {int(hz) // 1000} kHz ({WORDS[what]} {ours[what]:.1e}, {best['solver']} {best[what]:.1e})"
