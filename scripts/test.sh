@@ -47,6 +47,7 @@ run freestanding make --no-print-directory freestanding
 run purity make --no-print-directory purity
 run stack make --no-print-directory stack
 run instructions make --no-print-directory instructions
+run figures python3 benches/report/figures.py
 run compare make --no-print-directory compare CASES="$(echo tests/data/*.txt)" OUT="$log/compare" CHECK=--check
 
 printf '\n'

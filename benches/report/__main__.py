@@ -16,7 +16,12 @@ TABLES = [
     ("depth", "depth.csv"),
     ("cases", "totals.csv"),
     ("cases", "ratios.csv"),
+    ("high", "dq.csv"),
+    ("high", "grasp.csv"),
     ("high", "linearised.csv"),
+    ("high", "gripper.txt"),
+    ("high", "worst.csv"),
+    ("high", "flatter.csv"),
     ("forces", "forces.csv"),
     ("meshes", "pdg.csv"),
     ("meshes", "proximity.csv"),
@@ -26,8 +31,10 @@ TABLES = [
     ("stiff", "stiff.csv"),
     ("leave-out", "bytes.csv"),
     ("leave-out", "work.csv"),
+    ("leave-out", "stack.csv"),
+    ("leave-out", "memory.csv"),
     ("growth", "growth.csv"),
-    ("growth", "triangles.csv"),
+    ("growth", "mesh-growth.csv"),
 ]
 
 

@@ -106,6 +106,7 @@ struct Instance {
     virtual ~Instance() = default;
     virtual Real height(const Wide &u) const = 0;  // h_A
     virtual Wide farthest(const Wide &u) const = 0;
+    virtual Real surely(const Wide &u) const { return height(u); }  // where A may be one of two sets: of the smaller one
     virtual Real unit(const Wide &u) const { return sqrtq(dot(u, u)); }  // h_Q
 };
 
@@ -178,8 +179,9 @@ struct Grasp : Instance<T> {
     typename Api<T>::Frame frame{};
     typename Api<T>::Wrenches wrenches{};
     bool sum = true;
+    bool doubtful = false;  // the joints' rank: the spin moment is the joints', or it is not
 
-    Real of_contact(const typename Api<T>::Contact &c, const Wide &u, Wide &point) const {
+    Real of_contact(const typename Api<T>::Contact &c, const Wide &u, Wide &point, bool spin = true) const {
         Real columns[4][6], g[4];
         const T *axes[4] = {c.normal, c.tangents, c.tangents + 3, c.normal};
         for (int k = 0; k < 4; ++k) {
@@ -191,7 +193,7 @@ struct Grasp : Instance<T> {
             g[k] = 0;
             for (int i = 0; i < 6; ++i) g[k] += columns[k][i] * u[i];
         }
-        const Real radii[4] = {0, c.mu, c.mu, c.friction == QDIST_SOFT ? c.mus : T(0)};
+        const Real radii[4] = {0, c.mu, c.mu, spin && c.friction == QDIST_SOFT ? c.mus : T(0)};
         Real friction = 0;
         for (int k = 1; k < 4; ++k) friction += radii[k] * radii[k] * g[k] * g[k];
         friction = sqrtq(friction);
@@ -201,11 +203,13 @@ struct Grasp : Instance<T> {
         }
         return g[0] + friction;
     }
-    Wide farthest(const Wide &u) const override {
+    Wide farthest(const Wide &u) const override { return farthest(u, true); }
+    Real surely(const Wide &u) const override { return std::max(Real(0), dot(farthest(u, !doubtful), u)); }
+    Wide farthest(const Wide &u, bool spin) const {
         Wide all(6, 0), one(6);
         Real most = 0;
         for (const auto &c : contacts) {
-            const Real h = of_contact(c, u, one);
+            const Real h = of_contact(c, u, one, spin);
             if (sum && h > 0)
                 for (int i = 0; i < 6; ++i) all[i] += one[i];
             if (!sum && h > most) most = h, all = one;
@@ -218,7 +222,7 @@ struct Grasp : Instance<T> {
         wrenches.primitives = primitives.data(), wrenches.count = static_cast<uint32_t>(contacts.size());
         wrenches.norm = sum ? QDIST_LINF : QDIST_L1;
         uint32_t which = 0;
-        if (Api<T>::primitives(contacts.data(), wrenches.count, &frame, 0, 0, primitives.data(), &which) || Api<T>::wrenches(&this->a, &wrenches)) std::abort();
+        if (Api<T>::primitives(contacts.data(), wrenches.count, &frame, doubtful ? 1 : 0, 0, primitives.data(), &which) || Api<T>::wrenches(&this->a, &wrenches)) std::abort();
     }
 };
 
@@ -228,7 +232,7 @@ struct Grasp : Instance<T> {
 template <class T>
 Real descended(const Instance<T> &of, Wide u, Real step) {
     Real best = 1e4000Q;
-    for (int k = 0; k < 60; ++k, step *= 0.75Q) {
+    for (int k = 0; k < 40; ++k, step *= 0.65Q) {
         const Real length = sqrtq(dot(u, u));
         for (Real &x : u) x /= length;
         const Real value = of.height(u) / of.unit(u);
@@ -254,7 +258,7 @@ void asked(const char *extreme, const std::string &value, const Instance<T> &of)
     Real most = of.most;
     if (isnanq(most)) {
         most = 1e4000Q;
-        for (int k = 0; k < 12; ++k) {
+        for (int k = 0; k < 6; ++k) {
             double u[6];
             random_direction(u, of.n);
             most = std::min(most, descended(of, Wide(u, u + of.n), 0.5Q));
@@ -266,7 +270,7 @@ void asked(const char *extreme, const std::string &value, const Instance<T> &of)
         typename Api<T>::Result result{};
         result.struct_size = sizeof result;
         if (Api<T>::init(memory, sizeof memory, of.n, &solver) || Api<T>::defaults(&options)) std::abort();
-        options.max_iterations = 3000;
+        options.max_iterations = 1000;
         qdist_status status;
         {
             const Mode held(mode);
@@ -277,8 +281,8 @@ void asked(const char *extreme, const std::string &value, const Instance<T> &of)
             continue;
         }
         const Wide u(result.direction, result.direction + of.n);
-        const Real proved = of.height(u) / of.unit(u);
-        if (isnanq(of.most) && dot(u, u) > 0.5Q) most = std::min({most, proved, descended(of, u, 1e-3Q)});
+        const Real proved = of.surely(u) / of.unit(u);
+        if (isnanq(of.most) && dot(u, u) > 0.5Q) most = std::min({most, of.height(u) / of.unit(u), descended(of, u, 1e-3Q)});
         all.push_back({mode, qdist_outcome_string(result.outcome), result.lower, result.upper, proved});
     }
     for (const Said &said : all) {
@@ -305,9 +309,10 @@ std::unique_ptr<Solid<T>> solid(int n, bool crossed, char kind, double aspect, d
     return made;
 }
 
-// Fingertips on an ellipsoid, which press inward, `apart`: the normals of every second are those of the one before, turned by as much.
+// Fingertips on an ellipsoid, which press inward, `apart`: the normals of every second are those of the one before, turned by as much. `rank`: the joints' least singular
+// value over the largest, of joints that make the spin moment.
 template <class T>
-std::unique_ptr<Grasp<T>> grasp(int count, double mu, double torque_scale, double apart) {
+std::unique_ptr<Grasp<T>> grasp(int count, double mu, double torque_scale, double apart, double rank = 0) {
     auto made = std::make_unique<Grasp<T>>();
     made->sum = dice() > 0;
     made->frame.torque_scale = static_cast<T>(torque_scale);
@@ -331,9 +336,12 @@ std::unique_ptr<Grasp<T>> grasp(int count, double mu, double torque_scale, doubl
             contact.tangents[i] = static_cast<T>(o[i]), contact.tangents[3 + i] = static_cast<T>(t[i]);
         }
         contact.mu = static_cast<T>(mu), contact.mus = static_cast<T>(0.3 * mu);
-        contact.friction = dice() > 0 ? QDIST_SOFT : QDIST_HARD;
+        contact.friction = dice() > 0 || rank > 0 ? QDIST_SOFT : QDIST_HARD;
+        contact.actuated = rank > 0, contact.joints = rank > 0 ? 4 : 0;
+        for (int k = 0; k < 4; ++k) contact.jacobian[8 * k + k] = static_cast<T>(k < 3 ? 1 : rank * (1 + 0.1 * dice()));
         made->contacts.push_back(contact);
     }
+    made->doubtful = rank > 0;
     made->describe();
     return made;
 }
@@ -363,6 +371,11 @@ void all(int count) {
         for (int k = 0; k < count; ++k) {
             dice_state = static_cast<uint64_t>(1 + k + 1000 * (60 + exponent));
             asked("friction of a grasp", power(exponent), *grasp<T>(exponent < 0 ? 10 : 3 + k % 4, std::pow(10, exponent), 1, 0));
+        }
+    for (const int times : {-2, -1, 0, 1})
+        for (int k = 0; k < count; ++k) {
+            dice_state = static_cast<uint64_t>(1 + k + 1000 * (100 + times));
+            asked("hands: rank tolerance times", power(times), *grasp<T>(4 + k % 3, 0.5, 1, 0, (single ? 4e-6 : 1e-9) * std::pow(10, times)));
         }
     for (const int exponent : {-12, -9, -6, -3})
         for (int k = 0; k < count && !(single && exponent < -9); ++k) {

@@ -18,7 +18,7 @@ OFF, BLUR = Decimal("0.01"), {"f64": Decimal("1e-6"), "f32": Decimal("2e-5")}
 def sets_and_grasps(job):
     program = build.build_extremes(job)
     groups = {}
-    for row in parsed(run([program, 20 if job.quick else 200])):
+    for row in parsed(run([program, 10 if job.quick else 200])):
         groups.setdefault((row["extreme"], row["value"], row["scalar"], row["mode"]), []).append(row)
     for (extreme, value, scalar, mode), answers in groups.items():
         yield judged(extreme, value, scalar, mode, answers)

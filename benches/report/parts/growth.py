@@ -38,7 +38,7 @@ def measure(job):
     program = build.build_growth(job)
     largest = "10000" if job.quick else "100000"
     job.step("growth", ["growth.csv"], lambda: growth(job, program, largest))
-    job.step("triangles", ["triangles.csv"], lambda: triangles(job))
+    job.step("triangles", ["mesh-growth.csv"], lambda: triangles(job))
 
 
 def growth(job, program, largest):
@@ -64,7 +64,7 @@ def triangles(job):
         size = 2 * around * around
         rows.append({"series": "triangles of meshes", "size": size, "ns": row["ns"], "calls": int(row["collision_queries"]) + int(row["contact_queries"])})
         rows.append({"series": "meshes read and cut into pieces", "size": size, "ns": round(whole - float(row["ns"]))})
-    job.write_rows("triangles.csv", rows, COLUMNS)
+    job.write_rows("mesh-growth.csv", rows, COLUMNS)
 
 
 def counted(job, program, largest):
@@ -92,7 +92,7 @@ more vertices. Lines are powers fitted to the points, *y* = *c x^p*, and the tab
 
 
 def tell(job):
-    rows = job.rows("growth.csv") + job.rows("triangles.csv")
+    rows = job.rows("growth.csv") + job.rows("mesh-growth.csv")
     for row in rows:
         row.update({column: float(row[column] or "nan") for column in COLUMNS[1:]})
     names = [name for name in SERIES if any(row["series"] == name for row in rows)]

@@ -1,11 +1,13 @@
 """Distances in up to six dimensions, and grasps: the width of the bracket against time, beside linearised cones and the paper's bookkeeping."""
 
 import csv
+import os
+import re
 import statistics
 
-from report import grasps, rust, style
+from report import build, grasps, rust, style
 from report.cases import Dice
-from report.job import run
+from report.job import ROOT, run
 
 DQ = ["dq.csv", "fit.csv", "anytime.csv"]
 # Narrower brackets are drawn here.
@@ -23,6 +25,26 @@ def measure(job):
     rust.bench(job, "dq", DQ)
     rust.bench(job, "grasp", ["grasp.csv"])
     job.step("linearised", ["linearised.csv"], lambda: linearised(job))
+    job.step("gripper", ["gripper.txt"], lambda: gripper(job))
+    job.step("worst case", ["worst.csv", "flatter.csv"], lambda: worst(job))
+
+
+def gripper(job):
+    """What the example of a controller prints."""
+    library = build.library()
+    program = job.built / "gripper"
+    run([os.environ.get("CC", "cc"), "-std=c99", "-O2", f"-I{ROOT / 'include'}", ROOT / "examples/gripper.c", library, "-lm", "-lpthread", "-o", program])
+    job.write_text("gripper.txt", run([program]))
+
+
+def worst(job):
+    """A ball that is not given as one, and ellipsoids: the tables of the example."""
+    said = run([rust.cargo(), "run", "--quiet", "--release", "--locked", "--features", "std", "--example", "worst_case"], cwd=ROOT)
+    table, lines = said.strip().split("\n\n")
+    head, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+    job.write_rows("worst.csv", [dict(zip(head, row)) for row in rows], head)
+    found = re.findall(r"^origin (.*) off its centre: (\w+), (\d+) steps$", lines, re.M)
+    job.write_rows("flatter.csv", [dict(zip(("off", "outcome", "steps"), row)) for row in found], ["off", "outcome", "steps"])
 
 
 def linearised(job):
