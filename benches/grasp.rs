@@ -120,7 +120,7 @@ fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
     let quick = arguments.iter().any(|a| a == "--quick");
     let out = arguments.iter().find(|a| !a.starts_with("--")).cloned().unwrap_or("out/grasp".into());
-    let count = if quick { 20 } else { 100 };
+    let count = if quick { 8 } else { 100 };
     let mut dice = Dice::new(2013);
     let mut memory = Box::new(Memory::new());
     let mut report =

@@ -62,7 +62,7 @@ const QUICK: Effort = Effort {
     sample: Duration::from_millis(30),
     patience: Duration::from_millis(100),
     limit: Duration::from_secs(2),
-    budget: Duration::from_secs(45),
+    budget: Duration::from_secs(12),
 };
 
 /// Rows so far, and what they cost.

@@ -48,7 +48,7 @@ FAMILIES = {
 
 
 def families(job):
-    return [family for family in FAMILIES if not (job.quick and family == "hull-5000")]
+    return [family for family in FAMILIES if not (job.quick and family in ("hull-500", "hull-5000"))]
 
 
 def sets(family, quick):
