@@ -60,14 +60,7 @@ pub extern "C" fn qdist_tracker_lower_after_f64(
         lower.checked()?;
         finite(&[moved])?;
         let tracker = tracker.get()?;
-        lower.put(match tracker.dimension {
-            2 => tracker.lower_after::<2>(q, moved),
-            3 => tracker.lower_after::<3>(q, moved),
-            4 => tracker.lower_after::<4>(q, moved),
-            5 => tracker.lower_after::<5>(q, moved),
-            6 => tracker.lower_after::<6>(q, moved),
-            _ => Err(QDIST_ERROR_DIMENSION),
-        }?)
+        lower.put(in_dimension!(tracker.dimension, tracker.lower_after::<N>(q, moved))?)
     })
 }
 
