@@ -108,37 +108,12 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |s, (&x, &y)| s + x * y)
 }
 
-/// max |x_i|
-#[inline(always)]
-pub fn largest<T: Real>(list: &[T]) -> T {
-    list.iter().fold(T::zero(), |m, &x| m.at_least(x).at_least(-x))
-}
-
 /// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow. (Two roundoffs of it are
 /// still normal: 1e-276, for `float` 3e-24.)
 #[inline(always)]
 pub fn tiny<T: Real>() -> T {
     T::SAFE_SQUARE
 }
-
-/// The direction, scaled if its products could leave the range of the format. `store` keeps the scaled one.
-#[inline(always)]
-pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
-    let size = largest(u);
-    let limit = T::count(1 << 16);
-    if (size < limit && size * limit > T::one()) || !(size > T::zero()) { u } else { scaled(u, size, store) }
-}
-
-#[cold]
-#[inline(never)]
-fn scaled<'a, T: Real>(u: &'a [T], size: T, store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
-    for (to, &from) in store.iter_mut().zip(u) {
-        *to = from / size;
-    }
-    store.get(..u.len()).unwrap_or(u)
-}
-
-// ------------------------------------------------------------------------------------------------- lists of points
 
 /// Coordinates as points.
 #[inline(always)]

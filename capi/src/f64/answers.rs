@@ -13,6 +13,10 @@ pub(super) trait Answers<const N: usize>: 'static {
     fn precise(_of: &Self::Struct, _u: &TwoWords<f64, N>) -> Option<TwoWords<f64, N>> {
         None
     }
+    /// Does the set not change when these coordinates change sign?
+    fn mirrored(_of: &Self::Struct, _signs: u8) -> bool {
+        false
+    }
 }
 
 /// The support function, for a set's `support`.
@@ -27,6 +31,10 @@ pub(super) fn exhaustive_of<A: Answers<N>, const N: usize>() -> qdist_support_f6
 
 pub(super) fn precise_of<A: Answers<N>, const N: usize>() -> qdist_precise_f64 {
     Some(precise::<A, N>)
+}
+
+pub(super) fn mirrored_of<A: Answers<N>, const N: usize>() -> qdist_mirrored {
+    Some(mirrored::<A, N>)
 }
 
 type Arguments<'a, S, const N: usize, const M: usize> = (&'a S, &'a Vector<f64, N>, &'a mut MaybeUninit<[f64; M]>);
@@ -87,66 +95,10 @@ unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
     i32::from(ask().is_none())
 }
 
-// ------------------------------------------------------------------------------------------------- run-time dimensions
-
-/// A struct that knows its dimension at run time only.
-pub(super) trait Dimensioned: 'static {
-    fn dimension(&self) -> Check<usize>;
-    /// Does the set not change when these coordinates change sign?
-    fn mirrored(&self, _signs: u8) -> bool {
-        false
-    }
-}
-
-/// `dimensioned!(type, field)`
-macro_rules! dimensioned {
-    ($($struct:ty, $field:ident;)*) => {
-        $(impl Dimensioned for $struct {
-            fn dimension(&self) -> Check<usize> {
-                dimension(self.$field)
-            }
-        })*
-    };
-}
-
-dimensioned! {
-    qdist_linear_f64, rows;
-}
-
-/// How such a struct answers as a set.
-pub(super) trait AnswersAny: 'static {
-    type Struct: Dimensioned;
-    /// A point, or a code; `u` has as many numbers as the dimension, of which the answer's first count.
-    fn farthest(of: &Self::Struct, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]>;
-}
-
-pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: bool>(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
-    let (of, u, room) = unsafe { (In::<A::Struct>::new(user.cast()), In::new(direction), Out::new(point)) };
-    status_of(|| {
-        let of = of.get()?;
-        let n = of.dimension()?;
-        let u = u.array(Some(n))?;
-        room.checked()?;
-        put_first(&room, &A::farthest(of, u, EXHAUSTIVE)?, n)
-    })
-}
-
-pub(super) unsafe extern "C" fn mirrored_any<S: Dimensioned>(user: *mut c_void, signs: u32) -> i32 {
+unsafe extern "C" fn mirrored<A: Answers<N>, const N: usize>(user: *mut c_void, signs: u32) -> i32 {
     // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let of = unsafe { In::<S>::new(user.cast()) };
-    i32::from(of.get().is_ok_and(|of| of.mirrored(signs as u8)))
-}
-
-fn put_first(room: &Out<f64>, point: &[f64; MAX_DIMENSION], n: usize) -> Check {
-    for (index, &x) in point.iter().enumerate().take(n) {
-        room.put_at(index, x)?;
-    }
-    Ok(())
+    let of = unsafe { In::<A::Struct>::new(user.cast()) };
+    i32::from(of.get().is_ok_and(|of| A::mirrored(of, signs as u8)))
 }
 
 // ------------------------------------------------------------------------------------------------- unit sets

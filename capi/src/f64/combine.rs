@@ -4,6 +4,7 @@
 //! set that is made of them.
 
 use super::*;
+use qdist::internal::near_unit;
 use qdist::support::{Difference, Join, Sum};
 
 /// Two sets of the same dimension.
@@ -61,16 +62,7 @@ pub extern "C" fn qdist_set_join_f64(set: Out<qdist_set_f64>, pair: In<qdist_pai
 /// translation, or the image is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_linear_f64(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> qdist_status {
-    status(fill_linear(set, map))
-}
-
-/// Asks a part for its point along `u`.
-fn ask(set: &qdist_set_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
-    let mut point = [f64::NAN; MAX_DIMENSION];
-    match set.ask(u, exhaustive, &mut point) {
-        0 => Ok(point),
-        code => Err(code),
-    }
+    status(map.get().and_then(|m| in_dimension!(m.rows, fill_linear::<N>(set, map))))
 }
 
 /// At least |v|.
@@ -106,14 +98,10 @@ impl<const MADE: u8, const N: usize> Answers<N> for Pair<MADE> {
         let found = Self::ask(a, b, |set| if exhaustive { set.exhaustive(u).map(|(p, _)| p) } else { set.support(u) });
         found.map_err(|Failure(code)| code)
     }
-}
-
-/// Is it certain that a change of sign leaves both parts as they are?
-unsafe extern "C" fn pair_mirrored(user: *mut c_void, signs: u32) -> i32 {
-    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let pair = unsafe { In::<qdist_pair_f64>::new(user.cast()) };
-    let stays = |set: &In<qdist_set_f64>| set.get().is_ok_and(|set| set.is_mirrored(signs as u8));
-    i32::from(pair.get().is_ok_and(|pair| stays(&pair.a) && stays(&pair.b)))
+    fn mirrored(pair: &qdist_pair_f64, signs: u8) -> bool {
+        let stays = |set: &In<qdist_set_f64>| set.get().is_ok_and(|set| set.is_mirrored(signs));
+        stays(&pair.a) && stays(&pair.b)
+    }
 }
 
 fn fill_pair<const MADE: u8, const N: usize>(set: Out<qdist_set_f64>, pair: In<qdist_pair_f64>) -> Check {
@@ -132,7 +120,7 @@ fn fill_pair<const MADE: u8, const N: usize>(set: Out<qdist_set_f64>, pair: In<q
     set.put(qdist_set_f64 {
         support: support_of::<Pair<MADE>, N>(),
         exhaustive: if a.exhaustive.or(b.exhaustive).is_some() { exhaustive_of::<Pair<MADE>, N>() } else { None },
-        mirrored: if a.mirrored.and(b.mirrored).is_some() { Some(pair_mirrored) } else { None },
+        mirrored: if a.mirrored.and(b.mirrored).is_some() { mirrored_of::<Pair<MADE>, N>() } else { None },
         user: pair.user(),
         ..stated
     })
@@ -148,45 +136,38 @@ impl qdist_linear_f64 {
 
 struct Linear;
 
-impl AnswersAny for Linear {
+impl<const N: usize> Answers<N> for Linear {
     type Struct = qdist_linear_f64;
-    fn farthest(map: &qdist_linear_f64, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
-        let (matrix, columns) = (map.matrix()?, dimension(map.columns)?);
-        let set = map.set.get()?;
+    fn farthest(map: &qdist_linear_f64, u: &Vector<f64, N>, exhaustive: bool) -> Check<Vector<f64, N>> {
+        let (matrix, columns, set) = (map.matrix()?, dimension(map.columns)?, map.set.get()?);
         let mut w = [0.0; MAX_DIMENSION];
         for (row, &x) in matrix.chunks_exact(columns).zip(u) {
             for (w, &m) in w.iter_mut().zip(row) {
                 *w += m * x;
             }
         }
-        let mut store = [0.0; MAX_DIMENSION];
-        let w = in_range(first(&w, columns)?, &mut store);
-        let squared = dot(w, w);
-        // A direction that the map loses: every point of the set is as far as any other.
-        let axis = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let w = if squared > 0.0 { w } else { first(&axis, columns)? };
-        let mut x = ask(set, w, exhaustive)?;
+        let mut w = near_unit(Vector::from(w));
+        let squared = w.dot(&w);
+        if !(squared > 0.0) {
+            // A direction that the map loses: every point of the set is as far as any other.
+            w.x = 1.0;
+        }
+        let mut x = Vector::<f64, MAX_DIMENSION>::from_element(f64::NAN);
+        from_status(set.ask(first(w.as_slice(), columns)?, exhaustive, x.as_mut_slice()))?;
         if set.radius > 0.0 && squared > 0.0 {
-            let scale = set.radius / squared.root();
-            for (x, &w) in x.iter_mut().zip(w) {
-                *x += scale * w;
-            }
+            x += w * (set.radius / squared.root());
         }
-        let mut image = [0.0; MAX_DIMENSION];
-        for ((to, row), t) in image.iter_mut().zip(matrix.chunks_exact(columns)).zip(&map.translation) {
-            *to = dot(row, &x) + t;
-        }
-        Ok(image)
+        let rows = matrix.chunks_exact(columns).zip(&map.translation);
+        Ok(leading(&padded(rows.map(|(row, t)| dot(row, x.as_slice()) + t))))
     }
 }
 
-fn fill_linear(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> Check {
+fn fill_linear<const N: usize>(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> Check {
     set.checked()?;
     let linear = map.get()?;
     let (inner, columns) = (linear.set.get()?, dimension(linear.columns)?);
     inner.check(columns)?;
-    let (matrix, n) = (linear.matrix()?, dimension(linear.rows)?);
-    let shift = first(&linear.translation, n)?;
+    let (matrix, shift) = (linear.matrix()?, first(&linear.translation, N)?);
     coordinates(matrix)?;
     coordinates(shift)?;
     let stretch = norm(matrix);
@@ -199,8 +180,8 @@ fn fill_linear(set: Out<qdist_set_f64>, map: In<qdist_linear_f64>) -> Check {
     // Both products, the unit vector for the ball term, the two sums: see `support::Linear`.
     let error = length((stretch * own + f64::count(4 * MAX_DIMENSION + 8) * f64::ROUNDOFF * reach) * 1.000001)?;
     set.put(qdist_set_f64 {
-        support: Some(support_any::<Linear, false>),
-        exhaustive: if inner.exhaustive.is_some() { Some(support_any::<Linear, true>) } else { None },
+        support: support_of::<Linear, N>(),
+        exhaustive: if inner.exhaustive.is_some() { exhaustive_of::<Linear, N>() } else { None },
         user: map.user(),
         extent: reach,
         error,
