@@ -108,12 +108,17 @@ pub(super) trait AnswersUnit<const N: usize>: 'static {
     type Set<'a>: UnitSet<f64, N>;
     /// Checks the numbers. The set, and an upper bound of |q| over it.
     fn stated(&self) -> Check<(Self::Set<'_>, f64)>;
+    /// Radius of a ball in the set.
+    fn inner_radius(&self, set: &Self::Set<'_>) -> f64 {
+        set.inner_radius()
+    }
     /// Trusts them: they were checked when the unit set was made.
     fn trusted(&self) -> Check<Self::Set<'_>>;
 }
 
 pub(super) fn fill_unit<S: AnswersUnit<N>, const N: usize>(unit: Out<qdist_unit_f64>, shape: In<S>) -> Check {
-    let (set, extent) = shape.get()?.stated()?;
+    let of = shape.get()?;
+    let (set, extent) = of.stated()?;
     let vertex_count = u32::try_from(set.vertex_count()).map_err(|_| QDIST_ERROR_ARGUMENT)?;
     unit.put(qdist_unit_f64 {
         value: Some(unit_value::<S, N>),
@@ -122,7 +127,7 @@ pub(super) fn fill_unit<S: AnswersUnit<N>, const N: usize>(unit: Out<qdist_unit_
         mirrored: Some(unit_mirrored::<S, N>),
         user: shape.user(),
         extent: length(extent)?,
-        inner_radius: set.inner_radius(),
+        inner_radius: of.inner_radius(&set),
         vertex_count,
         dimension: N as u32,
         ..qdist_unit_f64::ZERO

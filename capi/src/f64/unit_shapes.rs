@@ -6,7 +6,7 @@ use qdist::qset::{CrossPolytope, Segment, UnitBox, UnitEllipsoid, Vertices};
 use qdist::support::ShapeError;
 
 macro_rules! unit {
-    ($struct:ty, $set:ident, |$s:ident| $($size:expr),+) => {
+    ($struct:ty, $set:ident, |$s:ident| $($size:expr),+ $(; $($own:tt)+)?) => {
         impl<const N: usize> AnswersUnit<N> for $struct {
             type Set<'a> = $set<f64, N>;
             fn stated(&self) -> Check<(Self::Set<'_>, f64)> {
@@ -17,13 +17,21 @@ macro_rules! unit {
             #[inline(always)]
             fn trusted(&self) -> Check<Self::Set<'_>> {
                 let $s = self;
-                Ok($set::trusted($($size),+))
+                // A struct that has become one of another dimension is none of this.
+                if $s.dimension as usize == N { Ok($set::trusted($($size),+)) } else { Err(QDIST_ERROR_DIMENSION) }
             }
+            $($($own)+)?
         }
     };
 }
 
-unit!(qdist_ellipsoid_unit_f64, UnitEllipsoid, |s| leading(&s.semi_axes), s.rotation()?);
+unit!(qdist_ellipsoid_unit_f64, UnitEllipsoid, |s| leading(&s.semi_axes), s.rotation()?;
+    /// Without a rotation there is none that rounding could have bent.
+    fn inner_radius(&self, set: &Self::Set<'_>) -> f64 {
+        let axes = self.semi_axes.iter().take(N);
+        if self.rotation.is_null() { axes.fold(f64::HUGE, |least, &x| least.at_most(x)) } else { set.inner_radius() }
+    }
+);
 unit!(qdist_box_unit_f64, UnitBox, |s| leading(&s.half));
 unit!(qdist_cross_unit_f64, CrossPolytope, |s| leading(&s.semi_axes));
 unit!(qdist_segment_unit_f64, Segment, |s| leading(&s.end));
