@@ -1,4 +1,5 @@
-//! Makes the module `f32` of the text of `src/f64`, by the rules of `f32.sed`.
+//! Makes text of text, as `scripts/header.sh` does for the headers: the functions of the dimensions 3 to 6 of those of dimension 2, and the module
+//! `f32` of `src/f64`, by the rules of `f32.sed`.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -22,8 +23,13 @@ impl<'a> Rule<'a> {
     }
 }
 
+fn for_f32(text: &str, rules: &[Rule]) -> String {
+    let scaled = |line: &str| rules.iter().fold(line.to_string(), |line, rule| rule.apply(&line)) + "\n";
+    text.lines().map(scaled).collect()
+}
+
 /// The text of a module file, with the text of its submodules in it.
-fn inlined(file: &Path, rules: &[Rule]) -> io::Result<String> {
+fn inlined(file: &Path) -> io::Result<String> {
     println!("cargo::rerun-if-changed={}", file.display());
     let mut text = String::new();
     for line in fs::read_to_string(file)?.lines() {
@@ -33,20 +39,40 @@ fn inlined(file: &Path, rules: &[Rule]) -> io::Result<String> {
             let folder = file.parent().unwrap_or(file);
             let alone = folder.join(name).with_extension("rs");
             let file = if alone.exists() { alone } else { folder.join(name).join("mod.rs") };
-            text += &format!("pub mod {name} {{\n{}}}\n", inlined(&file, rules)?);
+            text += &format!("pub mod {name} {{\n{}}}\n", inlined(&file)?);
         } else {
-            text += &rules.iter().fold(line.to_string(), |line, rule| rule.apply(&line));
+            text += line;
             text.push('\n');
         }
     }
     Ok(text)
 }
 
+/// Each exported function that this comment follows is one of dimension 2, and stands for those of the others.
+const LIKEWISE: &str = "// Likewise in dimensions 3 to 6.";
+
+fn other_dimensions(text: &str) -> String {
+    let functions =
+        text.split(LIKEWISE).filter_map(|before| Some(before.get(before.rfind("#[unsafe(no_mangle)]")?..)?));
+    let (functions, all) = (functions.collect::<Vec<_>>(), text.matches(LIKEWISE).count());
+    let of = |n: u32| {
+        functions
+            .iter()
+            .take(all)
+            .map(move |f| f.replace("2_f64(", &format!("{n}_f64(")).replace("::<2>", &format!("::<{n}>")))
+    };
+    (3..=6).flat_map(of).collect()
+}
+
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=f32.sed");
     let script = fs::read_to_string("f32.sed")?;
     let rules: Vec<Rule> = script.lines().filter_map(Rule::parse).collect();
-    let text = inlined(Path::new("src/f64/mod.rs"), &rules)?;
+    let text = inlined(Path::new("src/f64/mod.rs"))?;
+    let others = other_dimensions(&text);
     let out = env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?;
-    fs::write(Path::new(&out).join("f32.rs"), format!("pub mod f32 {{\n{text}}}\n"))
+    let write = |name: &str, text: &str| fs::write(Path::new(&out).join(name), text);
+    write("f32.rs", &format!("pub mod f32 {{\n{}}}\n", for_f32(&text, &rules)))?;
+    write("dimensions_f32.rs", &for_f32(&others, &rules))?;
+    write("dimensions_f64.rs", &others)
 }

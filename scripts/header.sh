@@ -34,15 +34,30 @@ chapter() {
     grep -vE "^WARN: (Can't find qdist_|Skip .*::_ |Skip .*not .pub.|Skip(ping)? .*not .no_mangle.)|^$" "$out.warnings" >&2 || true
 }
 
-# The chapters of the other scalar, as capi/build.rs makes them.
-mkdir -p "$dir/f32/grasp"
-for file in capi/src/f64/*.rs capi/src/f64/grasp/*.rs; do sed -f capi/f32.sed "$file" >"$dir/f32/${file#capi/src/f64/}"; done
+# The chapters with the functions of the dimensions 3 to 6, and those of the other scalar, as capi/build.rs makes them.
+mkdir -p "$dir/f64/grasp" "$dir/f32/grasp"
+for file in capi/src/f64/*.rs capi/src/f64/grasp/*.rs; do
+    name=${file#capi/src/f64/}
+    awk '
+        { print }
+        /^#\[unsafe\(no_mangle\)\]/ { text = "" }
+        { text = text "\n" $0 }
+        match($0, /fn qdist_[a-z_]*2_f64\(/) { function_of_2 = substr($0, RSTART + 3, RLENGTH - 8) }
+        /^\/\/ Likewise in dimensions 3 to 6\.$/ {
+            for (n = 3; n <= 6; n++) {
+                other = text
+                gsub(/2_f64\(/, n "_f64(", other)
+                print "/// The same in dimension " n ".\n///\n/// Status: as of " function_of_2 "." other
+            }
+        }' "$file" >"$dir/f64/$name"
+    sed -f capi/f32.sed "$dir/f64/$name" >"$dir/f32/$name"
+done
 
 # A header: what it begins with, chapters without a scalar, and chapters for both.
 header() {
     cat "$1"
     for file in $2; do chapter cbindgen.toml "capi/src/$file.rs" ""; done
-    for file in $3; do chapter cbindgen.toml "capi/src/f64/$file.rs" ""; done
+    for file in $3; do chapter cbindgen.toml "$dir/f64/$file.rs" ""; done
     for file in $3; do chapter "$out.toml" "$dir/f32/$file.rs" ", FLOAT"; done
     printf '\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n'
 }

@@ -60,14 +60,7 @@ fn layout<T: Real, const N: usize>(max_vertices: u32, max_facets: u32) -> Check<
 }
 
 fn layout_of<T: Real>(dimension: u32, max_vertices: u32, max_facets: u32) -> Check<Layout> {
-    match dimension {
-        2 => layout::<T, 2>(max_vertices, max_facets),
-        3 => layout::<T, 3>(max_vertices, max_facets),
-        4 => layout::<T, 4>(max_vertices, max_facets),
-        5 => layout::<T, 5>(max_vertices, max_facets),
-        6 => layout::<T, 6>(max_vertices, max_facets),
-        _ => Err(QDIST_ERROR_DIMENSION),
-    }
+    in_dimension!(dimension, layout::<T, N>(max_vertices, max_facets))
 }
 
 /// Header and block, in bytes.

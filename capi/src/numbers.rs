@@ -67,6 +67,31 @@ pub fn first<S>(list: &[S], n: usize) -> Check<&[S]> {
     list.get(..n).ok_or(QDIST_ERROR_DIMENSION)
 }
 
+/// Does what names the dimension `N`: the number in a struct of the header.
+macro_rules! in_dimension {
+    ($n:expr, $call:expr) => {
+        match $n {
+            2 => $crate::numbers::in_dimension!(@2, $call),
+            3 => $crate::numbers::in_dimension!(@3, $call),
+            4 => $crate::numbers::in_dimension!(@4, $call),
+            5 => $crate::numbers::in_dimension!(@5, $call),
+            6 => $crate::numbers::in_dimension!(@6, $call),
+            _ => Err(QDIST_ERROR_DIMENSION),
+        }
+    };
+    (@$n:literal, $call:expr) => {{
+        const N: usize = $n;
+        $call
+    }};
+}
+pub(crate) use in_dimension;
+
+/// The first numbers of a list that is filled up.
+#[inline(always)]
+pub fn leading<T: Real, const N: usize>(list: &[T; MAX_DIMENSION]) -> Vector<T, N> {
+    Vector::from_fn(|i, _| list.get(i).copied().unwrap_or(T::zero()))
+}
+
 /// A list in an array, filled up with zeros.
 #[inline]
 pub fn padded<T: Real>(list: impl Iterator<Item = T>) -> [T; MAX_DIMENSION] {
@@ -83,66 +108,11 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |s, (&x, &y)| s + x * y)
 }
 
-/// max |x_i|
-#[inline(always)]
-pub fn largest<T: Real>(list: &[T]) -> T {
-    list.iter().fold(T::zero(), |m, &x| m.at_least(x).at_least(-x))
-}
-
-/// An upper bound of the largest norm of the points, for coordinates that passed [`coordinates`].
-pub fn reach<T: Real>(points: &[T], dimension: usize) -> T {
-    let size = largest(points);
-    if !(size > T::zero()) {
-        return tiny();
-    }
-    // Scaled, so that no square overflows.
-    let mut most = T::zero();
-    for point in points.chunks_exact(dimension.max(1)) {
-        most = most.at_least(point.iter().fold(T::zero(), |s, &x| s + (x / size) * (x / size)));
-    }
-    size * most.root() * (T::one() + T::count(32) * T::ROUNDOFF)
-}
-
 /// Stands for a length of zero that is known: 0 itself says "unknown", and products of a subnormal number are slow. (Two roundoffs of it are
 /// still normal: 1e-276, for `float` 3e-24.)
 #[inline(always)]
 pub fn tiny<T: Real>() -> T {
     T::SAFE_SQUARE
-}
-
-/// The direction, scaled if its products could leave the range of the format. `store` keeps the scaled one.
-#[inline(always)]
-pub fn in_range<'a, T: Real>(u: &'a [T], store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
-    let size = largest(u);
-    let limit = T::count(1 << 16);
-    if (size < limit && size * limit > T::one()) || !(size > T::zero()) { u } else { scaled(u, size, store) }
-}
-
-#[cold]
-#[inline(never)]
-fn scaled<'a, T: Real>(u: &'a [T], size: T, store: &'a mut [T; MAX_DIMENSION]) -> &'a [T] {
-    for (to, &from) in store.iter_mut().zip(u) {
-        *to = from / size;
-    }
-    store.get(..u.len()).unwrap_or(u)
-}
-
-// ------------------------------------------------------------------------------------------------- lists of points
-
-/// A point and its product with the direction.
-type Candidate<'a, T> = (T, &'a [T]);
-
-/// The point of a list of `dimension` coordinates each that is farthest along `u`, the first one of equals, and its product
-/// with `u`.
-pub fn farthest<'a, T: Real>(points: &'a [T], dimension: usize, u: &[T]) -> Option<Candidate<'a, T>> {
-    let mut best: Option<Candidate<'a, T>> = None;
-    for point in points.chunks_exact(dimension.max(1)) {
-        let height = dot(point, u);
-        if best.is_none_or(|(most, _)| height > most) {
-            best = Some((height, point));
-        }
-    }
-    best
 }
 
 /// Coordinates as points.

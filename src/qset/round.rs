@@ -4,8 +4,9 @@ use nalgebra::SMatrix;
 
 use super::UnitSet;
 use super::sets::{positive, roundings};
-use crate::math::{Vector, norm};
+use crate::math::{Vector, largest, norm};
 use crate::scalar::Real;
+use crate::support::range::above;
 use crate::support::{BoxShape, Ellipsoid, Failure, ShapeError, Support};
 
 /// The Euclidean ball, `h = radius |u|`: with radius 1, d_Q is the ordinary penetration depth (paper, eq. 16).
@@ -97,7 +98,7 @@ impl<T: Real, const N: usize> UnitEllipsoid<T, N> {
         if !rotation.data.0.iter().all(unit) {
             return Err(ShapeError::NotOrthonormal);
         }
-        let columns = SMatrix::<T, N, N>::from_fn(|i, j| semi_axes[j] / size * rotation[(i, j)]);
+        let columns = scaled_columns(semi_axes, rotation, size);
         let frobenius = columns.iter().fold(T::zero(), |s, &x| s + x * x).root();
         // The least singular value of R D: |R^T x| >= sqrt(1 - |R^T R - I|) |x|, for any matrix.
         let gram = rotation.tr_mul(&rotation) - SMatrix::identity();
@@ -106,6 +107,32 @@ impl<T: Real, const N: usize> UnitEllipsoid<T, N> {
         let inner = (least - least * skew).at_least(T::zero());
         Ok(Self { columns, size, inner, error: roundings(2 * N + 6, size * frobenius) })
     }
+
+    /// Of semi axes and a rotation that have been looked at before: as a support function alone.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    pub fn trusted(semi_axes: Vector<T, N>, rotation: SMatrix<T, N, N>) -> Self {
+        let size = largest(&semi_axes);
+        Self { columns: scaled_columns(semi_axes, rotation, size), size, inner: T::zero(), error: T::zero() }
+    }
+
+    /// An upper bound of |q|.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn extent(&self) -> T {
+        above(self.size * self.columns.iter().fold(T::zero(), |s, &x| s + x * x).root(), N * N)
+    }
+}
+
+/// D R^T transposed, divided by the largest semi axis.
+#[inline(always)]
+fn scaled_columns<T: Real, const N: usize>(
+    semi_axes: Vector<T, N>,
+    rotation: SMatrix<T, N, N>,
+    size: T,
+) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|i, j| semi_axes[j] / size * rotation[(i, j)])
 }
 
 impl<T: Real, const N: usize> UnitSet<T, N> for UnitEllipsoid<T, N> {

@@ -4,7 +4,7 @@
 //! roundoff.
 
 use super::UnitSet;
-use crate::math::Vector;
+use crate::math::{Vector, largest, norm};
 use crate::scalar::Real;
 use crate::support::{BoxShape, Ellipsoid, Failure, Point, Points, ShapeError, Support};
 
@@ -72,6 +72,21 @@ impl<T: Real, const N: usize> UnitBox<T, N> {
         positive(shape.extent())?;
         Ok(Self { shape })
     }
+
+    /// Of sizes that have been looked at before.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    pub fn trusted(half: Vector<T, N>) -> Self {
+        Self { shape: BoxShape::trusted(half) }
+    }
+
+    /// An upper bound of |q|.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn extent(&self) -> T {
+        self.shape.extent()
+    }
 }
 
 impl<T: Real, const N: usize> UnitSet<T, N> for UnitBox<T, N> {
@@ -131,6 +146,21 @@ impl<T: Real, const N: usize> CrossPolytope<T, N> {
     pub fn new(semi: Vector<T, N>) -> Result<Self, ShapeError> {
         let size = positive(Ellipsoid::new(semi)?.extent())?;
         Ok(Self { semi, size })
+    }
+
+    /// Of sizes that have been looked at before.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    pub fn trusted(semi: Vector<T, N>) -> Self {
+        Self { semi, size: largest(&semi) }
+    }
+
+    /// An upper bound of |q|.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn extent(&self) -> T {
+        self.size
     }
 }
 
@@ -205,6 +235,21 @@ impl<T: Real, const N: usize> Segment<T, N> {
         let length = positive(Point::new(end)?.extent())?;
         Ok(Self { end, length })
     }
+
+    /// Of sizes that have been looked at before.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    pub fn trusted(end: Vector<T, N>) -> Self {
+        Self { end, length: norm(&end) }
+    }
+
+    /// An upper bound of |q|.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn extent(&self) -> T {
+        self.length
+    }
 }
 
 impl<T: Real, const N: usize> UnitSet<T, N> for Segment<T, N> {
@@ -251,6 +296,13 @@ impl<'a, T: Real, const N: usize> Vertices<'a, T, N> {
         let points = Points::new(points)?;
         positive(points.extent())?;
         Ok(Self { points })
+    }
+
+    /// An upper bound of |q|.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn extent(&self) -> T {
+        self.points.extent()
     }
 }
 

@@ -13,6 +13,10 @@ pub(super) trait Answers<const N: usize>: 'static {
     fn precise(_of: &Self::Struct, _u: &TwoWords<f64, N>) -> Option<TwoWords<f64, N>> {
         None
     }
+    /// Does the set not change when these coordinates change sign?
+    fn mirrored(_of: &Self::Struct, _signs: u8) -> bool {
+        false
+    }
 }
 
 /// The support function, for a set's `support`.
@@ -27,6 +31,10 @@ pub(super) fn exhaustive_of<A: Answers<N>, const N: usize>() -> qdist_support_f6
 
 pub(super) fn precise_of<A: Answers<N>, const N: usize>() -> qdist_precise_f64 {
     Some(precise::<A, N>)
+}
+
+pub(super) fn mirrored_of<A: Answers<N>, const N: usize>() -> qdist_mirrored {
+    Some(mirrored::<A, N>)
 }
 
 type Arguments<'a, S, const N: usize, const M: usize> = (&'a S, &'a Vector<f64, N>, &'a mut MaybeUninit<[f64; M]>);
@@ -87,128 +95,83 @@ unsafe extern "C" fn precise<A: Answers<N>, const N: usize>(
     i32::from(ask().is_none())
 }
 
-// ------------------------------------------------------------------------------------------------- run-time dimensions
-
-/// A struct that knows its dimension at run time only.
-pub(super) trait Dimensioned: 'static {
-    fn dimension(&self) -> Check<usize>;
-    /// Does the set not change when these coordinates change sign?
-    fn mirrored(&self, _signs: u8) -> bool {
-        false
-    }
-}
-
-/// `dimensioned!(type, field)`
-macro_rules! dimensioned {
-    ($($struct:ty, $field:ident;)*) => {
-        $(impl Dimensioned for $struct {
-            fn dimension(&self) -> Check<usize> {
-                dimension(self.$field)
-            }
-        })*
-    };
-}
-
-dimensioned! {
-    qdist_points_f64, dimension;
-    qdist_linear_f64, rows;
-    qdist_box_unit_f64, dimension;
-    qdist_cross_unit_f64, dimension;
-    qdist_segment_unit_f64, dimension;
-}
-
-/// How such a struct answers as a set.
-pub(super) trait AnswersAny: 'static {
-    type Struct: Dimensioned;
-    /// A point, or a code; `u` has as many numbers as the dimension, of which the answer's first count.
-    fn farthest(of: &Self::Struct, u: &[f64], exhaustive: bool) -> Check<[f64; MAX_DIMENSION]>;
-}
-
-pub(super) unsafe extern "C" fn support_any<A: AnswersAny, const EXHAUSTIVE: bool>(
-    user: *mut c_void,
-    direction: *const f64,
-    point: *mut f64,
-) -> i32 {
-    // SAFETY: what the header asks of the caller of a support function; `user` is the set's.
-    let (of, u, room) = unsafe { (In::<A::Struct>::new(user.cast()), In::new(direction), Out::new(point)) };
-    status_of(|| {
-        let of = of.get()?;
-        let n = of.dimension()?;
-        let u = u.array(Some(n))?;
-        room.checked()?;
-        put_first(&room, &A::farthest(of, u, EXHAUSTIVE)?, n)
-    })
-}
-
-pub(super) unsafe extern "C" fn mirrored_any<S: Dimensioned>(user: *mut c_void, signs: u32) -> i32 {
+unsafe extern "C" fn mirrored<A: Answers<N>, const N: usize>(user: *mut c_void, signs: u32) -> i32 {
     // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
-    let of = unsafe { In::<S>::new(user.cast()) };
-    i32::from(of.get().is_ok_and(|of| of.mirrored(signs as u8)))
-}
-
-fn put_first(room: &Out<f64>, point: &[f64; MAX_DIMENSION], n: usize) -> Check {
-    for (index, &x) in point.iter().enumerate().take(n) {
-        room.put_at(index, x)?;
-    }
-    Ok(())
+    let of = unsafe { In::<A::Struct>::new(user.cast()) };
+    i32::from(of.get().is_ok_and(|of| A::mirrored(of, signs as u8)))
 }
 
 // ------------------------------------------------------------------------------------------------- unit sets
 
-/// How a struct answers as a unit set.
-pub(super) trait AnswersUnit: Dimensioned {
-    /// h_Q(u)
-    fn value(&self, u: &[f64]) -> Check<f64>;
-    /// A point with u.q = h_Q(u).
-    fn point(&self, u: &[f64]) -> Check<[f64; MAX_DIMENSION]>;
-    fn vertex(&self, _index: usize) -> Check<[f64; MAX_DIMENSION]> {
-        Err(QDIST_ERROR_ARGUMENT)
+/// The unit set that a struct stands for in dimension `N`.
+pub(super) trait AnswersUnit<const N: usize>: 'static {
+    type Set<'a>: UnitSet<f64, N>;
+    /// Checks the numbers. The set, and an upper bound of |q| over it.
+    fn stated(&self) -> Check<(Self::Set<'_>, f64)>;
+    /// Radius of a ball in the set.
+    fn inner_radius(&self, set: &Self::Set<'_>) -> f64 {
+        set.inner_radius()
     }
+    /// Trusts them: they were checked when the unit set was made.
+    fn trusted(&self) -> Check<Self::Set<'_>>;
+}
 
-    /// Fills a unit set: `stated` is what it says of itself, and `functions` which of those above it has.
-    fn fill(unit: &Out<qdist_unit_f64>, shape: In<Self>, stated: qdist_unit_f64, has_mirrors: bool) -> Check
-    where
-        Self: Sized,
-    {
-        let has_vertices = stated.vertex_count > 0;
-        unit.put(qdist_unit_f64 {
-            value: Some(unit_value::<Self>),
-            point: Some(unit_point::<Self>),
-            vertex: if has_vertices { Some(unit_vertex::<Self>) } else { None },
-            mirrored: if has_mirrors { Some(mirrored_any::<Self>) } else { stated.mirrored },
-            user: shape.user(),
-            ..stated
-        })
-    }
+pub(super) fn fill_unit<S: AnswersUnit<N>, const N: usize>(unit: Out<qdist_unit_f64>, shape: In<S>) -> Check {
+    let of = shape.get()?;
+    let (set, extent) = of.stated()?;
+    let vertex_count = u32::try_from(set.vertex_count()).map_err(|_| QDIST_ERROR_ARGUMENT)?;
+    unit.put(qdist_unit_f64 {
+        value: Some(unit_value::<S, N>),
+        point: Some(unit_point::<S, N>),
+        vertex: if vertex_count > 0 { Some(unit_vertex::<S, N>) } else { None },
+        mirrored: Some(unit_mirrored::<S, N>),
+        user: shape.user(),
+        extent: length(extent)?,
+        inner_radius: of.inner_radius(&set),
+        vertex_count,
+        dimension: N as u32,
+        ..qdist_unit_f64::ZERO
+    })
 }
 
 /// NaN says that the arguments are wrong.
-unsafe extern "C" fn unit_value<S: AnswersUnit>(user: *mut c_void, direction: *const f64) -> f64 {
+unsafe extern "C" fn unit_value<S: AnswersUnit<N>, const N: usize>(user: *mut c_void, direction: *const f64) -> f64 {
     // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
-    let (of, u) = unsafe { (In::<S>::new(user.cast()), In::new(direction)) };
-    let ask = || {
-        let of = of.get()?;
-        of.value(u.array(Some(of.dimension()?))?)
-    };
-    let answer: Check<f64> = ask();
-    answer.unwrap_or(f64::NAN)
+    let (of, u) = unsafe { (In::<S>::new(user.cast()), In::<Vector<f64, N>>::new(direction.cast())) };
+    let ask = || of.get()?.trusted()?.value(u.get()?).map_err(|Failure(code)| code);
+    ask().unwrap_or(f64::NAN)
 }
 
-unsafe extern "C" fn unit_point<S: AnswersUnit>(user: *mut c_void, direction: *const f64, point: *mut f64) -> i32 {
+unsafe extern "C" fn unit_point<S: AnswersUnit<N>, const N: usize>(
+    user: *mut c_void,
+    direction: *const f64,
+    point: *mut f64,
+) -> i32 {
     // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
-    let (of, u, room) = unsafe { (In::<S>::new(user.cast()), In::new(direction), Out::new(point)) };
+    let arguments = unsafe { arguments::<S, N, N>(user, direction, point) };
     status_of(|| {
-        let of = of.get()?;
-        let n = of.dimension()?;
-        put_first(&room, &of.point(u.array(Some(n))?)?, n)
+        let (of, u, room) = arguments?;
+        room.write(of.trusted()?.mapping(u).ok_or(QDIST_ERROR_ARGUMENT)?.into());
+        Ok(())
     })
 }
 
-unsafe extern "C" fn unit_vertex<S: AnswersUnit>(user: *mut c_void, index: u32, point: *mut f64) -> i32 {
+unsafe extern "C" fn unit_vertex<S: AnswersUnit<N>, const N: usize>(
+    user: *mut c_void,
+    index: u32,
+    point: *mut f64,
+) -> i32 {
     // SAFETY: what the header asks of the caller of a unit set's function; `user` is the set's.
-    let (of, room) = unsafe { (In::<S>::new(user.cast()), Out::new(point)) };
+    let (of, room) = unsafe { (In::<S>::new(user.cast()), Out::<[f64; N]>::new(point.cast())) };
     status_of(|| {
-        let of = of.get()?;
-        put_first(&room, &of.vertex(index as usize)?, of.dimension()?)
+        let set = of.get()?.trusted()?;
+        let index = Some(index as usize).filter(|&index| index < set.vertex_count());
+        room.put(set.vertex(index.ok_or(QDIST_ERROR_ARGUMENT)?).into())
     })
+}
+
+unsafe extern "C" fn unit_mirrored<S: AnswersUnit<N>, const N: usize>(user: *mut c_void, signs: u32) -> i32 {
+    // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
+    let of = unsafe { In::<S>::new(user.cast()) };
+    i32::from(of.get().and_then(S::trusted).is_ok_and(|set| set.mirrored(signs as u8)))
 }

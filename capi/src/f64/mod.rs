@@ -22,6 +22,7 @@ pub mod warm;
 use crate::vocabulary::*;
 use qdist::nalgebra::SMatrix;
 use qdist::qset::UnitSet;
-use {
-    answers::*, asked::*, bodies::*, combine::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, unit_shapes::*,
-};
+use {answers::*, asked::*, bodies::*, points::*, query::*, sets::*, shapes::*, unit_sets::*, warm::*};
+
+// The exported functions of the dimensions 3 to 6, made of those of dimension 2 by `build.rs`.
+include!(concat!(env!("OUT_DIR"), "/dimensions_f64.rs"));

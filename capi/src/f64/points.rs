@@ -59,7 +59,7 @@ const _: () = {
 /// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_set_points_f64(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> qdist_status {
-    status(fill_set(set, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_set::<N>(set, shape))))
 }
 
 /// Makes a body of a list of points of dimension 3. Reads all of them.
@@ -179,44 +179,25 @@ impl qdist_points_f64 {
 
     /// The points, of dimension `N`.
     #[inline(always)]
-    fn points<const N: usize>(&self) -> Check<&[[f64; N]]> {
+    pub(super) fn points<const N: usize>(&self) -> Check<&[[f64; N]]> {
         if self.dimension as usize == N { Ok(as_points(self.coordinates()?)) } else { Err(QDIST_ERROR_DIMENSION) }
     }
 
     /// The points, to be searched.
     #[inline(always)]
-    fn list<const N: usize>(&self) -> Check<List<'_, f64, N>> {
+    pub(super) fn list<const N: usize>(&self) -> Check<List<'_, f64, N>> {
         List::new(self.points()?).ok_or(QDIST_ERROR_ARGUMENT)
     }
 }
 
-/// A list of points of any dimension, as a set.
-struct Anywhere;
-
-impl AnswersAny for Anywhere {
-    type Struct = qdist_points_f64;
-    fn farthest(points: &qdist_points_f64, u: &[f64], _exhaustive: bool) -> Check<[f64; MAX_DIMENSION]> {
-        let (_, best) = farthest(points.coordinates()?, u.len(), in_range(u, &mut [0.0; MAX_DIMENSION]))
-            .ok_or(QDIST_ERROR_ARGUMENT)?;
-        Ok(padded(best.iter().copied()))
-    }
-}
-
-fn fill_set(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> Check {
+fn fill_set<const N: usize>(set: Out<qdist_set_f64>, shape: In<qdist_points_f64>) -> Check {
     set.checked()?;
-    let points = shape.get()?;
-    let n = dimension(points.dimension)?;
-    let list = points.coordinates()?;
-    coordinates(list)?;
-    let extent = reach(list, n);
-    set.put(qdist_set_f64 {
-        support: Some(support_any::<Anywhere, false>),
-        user: shape.user(),
-        extent,
-        error: f64::count(2 * n + 2) * f64::ROUNDOFF * extent,
-        dimension: points.dimension,
-        ..qdist_set_f64::ZERO
-    })
+    let all = Points::new(shape.get()?.points::<N>()?).map_err(from_shape)?;
+    let stated = qdist_set_f64::stated_by(&all);
+    let extent = stated.extent;
+    // The function measures from the origin, wherever the points are.
+    let error = f64::count(2 * N + 2) * f64::ROUNDOFF * extent;
+    set.put(qdist_set_f64 { support: support_of::<Scan<false>, N>(), user: shape.user(), error, ..stated })
 }
 
 /// By looking at all points; `FAR`: more accurate where all are far from the origin compared with their spread.

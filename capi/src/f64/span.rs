@@ -21,13 +21,7 @@ pub extern "C" fn qdist_solve_in_span_f64(
     result: Out<qdist_result_f64>,
 ) -> qdist_status {
     let question = Question { solver, a, q, options, result };
-    status(handle::dimension(&question.solver).and_then(|n| match n {
-        2 => solve_in_span::<2>(&question),
-        3 => solve_in_span::<3>(&question),
-        4 => solve_in_span::<4>(&question),
-        5 => solve_in_span::<5>(&question),
-        _ => solve_in_span::<6>(&question),
-    }))
+    status(handle::dimension(&question.solver).and_then(|n| in_dimension!(n, solve_in_span::<N>(&question))))
 }
 
 fn solve_in_span<const N: usize>(question: &Question) -> Check {

@@ -96,13 +96,13 @@ pub extern "C" fn qdist_unit_ball_f64(unit: Out<qdist_unit_f64>, radius: f64) ->
 /// Makes an ellipsoid.
 ///
 /// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (semi axes or rotation), ROTATION (rotation:
-/// its columns are not orthonormal, to 1e-4).
+/// a column is not of unit length, to 1e-3).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_ellipsoid_f64(
     unit: Out<qdist_unit_f64>,
     shape: In<qdist_ellipsoid_unit_f64>,
 ) -> qdist_status {
-    status(fill_ellipsoid(unit, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_unit::<_, N>(unit, shape))))
 }
 
 /// Makes a box.
@@ -110,7 +110,7 @@ pub extern "C" fn qdist_unit_ellipsoid_f64(
 /// Status: DIMENSION (shape->dimension), ARGUMENT (a half size is negative, or all are 0), NONFINITE (a half size, or the diagonal is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_box_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_box_unit_f64>) -> qdist_status {
-    status(fill_box(unit, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_unit::<_, N>(unit, shape))))
 }
 
 /// Makes a cross-polytope.
@@ -118,7 +118,7 @@ pub extern "C" fn qdist_unit_box_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_
 /// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (a semi axis).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_cross_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_cross_unit_f64>) -> qdist_status {
-    status(fill_cross(unit, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_unit::<_, N>(unit, shape))))
 }
 
 /// Makes a segment.
@@ -126,7 +126,7 @@ pub extern "C" fn qdist_unit_cross_f64(unit: Out<qdist_unit_f64>, shape: In<qdis
 /// Status: DIMENSION (shape->dimension), ARGUMENT (end is 0), NONFINITE (end).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_segment_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_segment_unit_f64>) -> qdist_status {
-    status(fill_segment(unit, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_unit::<_, N>(unit, shape))))
 }
 
 /// Makes the hull of the origin and a list of points, not all zero. Reads all of them.
@@ -134,7 +134,7 @@ pub extern "C" fn qdist_unit_segment_f64(unit: Out<qdist_unit_f64>, shape: In<qd
 /// Status: DIMENSION (shape->dimension), ARGUMENT (shape->count is 0, or all points are), NONFINITE (a coordinate).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_vertices_f64(unit: Out<qdist_unit_f64>, shape: In<qdist_points_f64>) -> qdist_status {
-    status(fill_vertices(unit, shape))
+    status(shape.get().and_then(|s| in_dimension!(s.dimension, fill_unit::<_, N>(unit, shape))))
 }
 
 /// A unit set of the caller that has passed the checks.

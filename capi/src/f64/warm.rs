@@ -60,14 +60,7 @@ pub extern "C" fn qdist_tracker_lower_after_f64(
         lower.checked()?;
         finite(&[moved])?;
         let tracker = tracker.get()?;
-        lower.put(match tracker.dimension {
-            2 => tracker.lower_after::<2>(q, moved),
-            3 => tracker.lower_after::<3>(q, moved),
-            4 => tracker.lower_after::<4>(q, moved),
-            5 => tracker.lower_after::<5>(q, moved),
-            6 => tracker.lower_after::<6>(q, moved),
-            _ => Err(QDIST_ERROR_DIMENSION),
-        }?)
+        lower.put(in_dimension!(tracker.dimension, tracker.lower_after::<N>(q, moved))?)
     })
 }
 
@@ -91,69 +84,7 @@ pub extern "C" fn qdist_solve_warm2_f64(
     status(solve_warm::<2>(&Question { solver, a, q, options, result }, tracker, moved))
 }
 
-/// The same in dimension 3.
-///
-/// Status: as of qdist_solve_warm2.
-#[unsafe(no_mangle)]
-pub extern "C" fn qdist_solve_warm3_f64(
-    solver: Out<qdist_solver>,
-    tracker: Out<qdist_tracker_f64>,
-    a: In<qdist_set_f64>,
-    q: In<qdist_unit_f64>,
-    moved: f64,
-    options: In<qdist_options_f64>,
-    result: Out<qdist_result_f64>,
-) -> qdist_status {
-    status(solve_warm::<3>(&Question { solver, a, q, options, result }, tracker, moved))
-}
-
-/// The same in dimension 4.
-///
-/// Status: as of qdist_solve_warm2.
-#[unsafe(no_mangle)]
-pub extern "C" fn qdist_solve_warm4_f64(
-    solver: Out<qdist_solver>,
-    tracker: Out<qdist_tracker_f64>,
-    a: In<qdist_set_f64>,
-    q: In<qdist_unit_f64>,
-    moved: f64,
-    options: In<qdist_options_f64>,
-    result: Out<qdist_result_f64>,
-) -> qdist_status {
-    status(solve_warm::<4>(&Question { solver, a, q, options, result }, tracker, moved))
-}
-
-/// The same in dimension 5.
-///
-/// Status: as of qdist_solve_warm2.
-#[unsafe(no_mangle)]
-pub extern "C" fn qdist_solve_warm5_f64(
-    solver: Out<qdist_solver>,
-    tracker: Out<qdist_tracker_f64>,
-    a: In<qdist_set_f64>,
-    q: In<qdist_unit_f64>,
-    moved: f64,
-    options: In<qdist_options_f64>,
-    result: Out<qdist_result_f64>,
-) -> qdist_status {
-    status(solve_warm::<5>(&Question { solver, a, q, options, result }, tracker, moved))
-}
-
-/// The same in dimension 6.
-///
-/// Status: as of qdist_solve_warm2.
-#[unsafe(no_mangle)]
-pub extern "C" fn qdist_solve_warm6_f64(
-    solver: Out<qdist_solver>,
-    tracker: Out<qdist_tracker_f64>,
-    a: In<qdist_set_f64>,
-    q: In<qdist_unit_f64>,
-    moved: f64,
-    options: In<qdist_options_f64>,
-    result: Out<qdist_result_f64>,
-) -> qdist_status {
-    status(solve_warm::<6>(&Question { solver, a, q, options, result }, tracker, moved))
-}
+// Likewise in dimensions 3 to 6.
 
 impl qdist_tracker_f64 {
     fn new(dimension: u32) -> Self {
@@ -195,7 +126,7 @@ impl qdist_tracker_f64 {
     }
 }
 
-fn solve_warm<const N: usize>(question: &Question, tracker: Out<qdist_tracker_f64>, moved: f64) -> Check {
+pub(super) fn solve_warm<const N: usize>(question: &Question, tracker: Out<qdist_tracker_f64>, moved: f64) -> Check {
     finite(&[moved])?;
     let mut memory = tracker.get()?.checked::<N>()?;
     let moved = (moved >= 0.0).then_some(moved);

@@ -3,7 +3,7 @@
 //! Pyramids of contacts, by the layout of a preset or one of yours, and their wrench sets.
 
 use super::*;
-use qdist::internal::{opposed, usable};
+use qdist::internal::{List, near_unit, opposed, usable};
 
 /// The friction pyramid of a contact at full normal force: the hull of its edges. Made by qdist_pyramids.
 #[repr(C)]
@@ -53,10 +53,8 @@ impl qdist_pyramid_f64 {
 
 impl Support<f64, 6> for CheckedPyramid {
     fn support(&self, u: &Vector<f64, 6>) -> Result<Vector<f64, 6>, Failure> {
-        let mut store = [0.0; 6];
-        let (_, edge) =
-            farthest(self.edges(), 6, in_range(u.as_slice(), &mut store)).ok_or(Failure(QDIST_ERROR_ARGUMENT))?;
-        Ok(Vector::from_iterator(edge.iter().copied()))
+        let list = List::new(self.edges().as_chunks::<6>().0).ok_or(Failure(QDIST_ERROR_ARGUMENT))?;
+        Ok(Vector::from(*list.scan::<false>(&near_unit(*u))))
     }
     fn extent(&self) -> f64 {
         self.0.extent

@@ -23,8 +23,10 @@ pub(super) trait Wrenches: 'static {
     fn checked(&self) -> Check<WrenchSet<'_, f64, Self::Contribution<'_>>>;
     /// The same without what takes a pass over the numbers.
     fn unchecked(&self) -> Check<WrenchSet<'_, f64, Self::Contribution<'_>>>;
-    /// Where the list knows its mirror images.
-    const MIRRORED: qdist_mirrored = None;
+    /// Is the set certainly its own mirror image?
+    fn mirrored(&self, _signs: u8) -> bool {
+        false
+    }
 
     /// Makes a set of it.
     fn fill(set: Out<qdist_set_f64>, wrenches: In<Self>) -> Check
@@ -36,7 +38,7 @@ pub(super) trait Wrenches: 'static {
         lengths([checked.extent(), checked.error()])?;
         set.put(qdist_set_f64 {
             support: support_of::<Exerted<Self>, 6>(),
-            mirrored: Self::MIRRORED,
+            mirrored: mirrored_of::<Exerted<Self>, 6>(),
             user: wrenches.user(),
             extent: checked.extent(),
             error: checked.error(),
@@ -56,21 +58,17 @@ impl<W: Wrenches> Answers<6> for Exerted<W> {
         let found = wrenches.unchecked()?.support(u).map_err(|Failure(code)| code)?;
         Ok(one_by_one(&found))
     }
-}
-
-impl Dimensioned for qdist_wrenches_f64 {
-    fn dimension(&self) -> Check<usize> {
-        Ok(6)
-    }
-    /// By comparison of all contributions.
-    fn mirrored(&self, signs: u8) -> bool {
-        self.unchecked().is_ok_and(|set| set.mirrored(signs))
+    fn mirrored(wrenches: &W, signs: u8) -> bool {
+        wrenches.mirrored(signs)
     }
 }
 
 impl Wrenches for qdist_wrenches_f64 {
     type Contribution<'a> = Primitive<f64>;
-    const MIRRORED: qdist_mirrored = Some(mirrored_any::<Self>);
+    /// By comparison of all contributions.
+    fn mirrored(&self, signs: u8) -> bool {
+        self.unchecked().is_ok_and(|set| set.mirrored(signs))
+    }
     fn checked(&self) -> Check<WrenchSet<'_, f64>> {
         let norm = checked_norm(self.norm)?;
         let list = self.primitives.array(Some(self.count as usize))?;
