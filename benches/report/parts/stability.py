@@ -16,6 +16,7 @@ PEERS = ["libccd EPA", "libccd MPR", "FCL", "FCL signed", "Bullet", "MuJoCo", "c
 KINDS = ["box", "sphere", "ellipsoid", "cylinder", "capsule", "cone", "hull-12"]
 # So long may a solver take for all pairs of a row.
 SECONDS = 20
+QUICKLY = 4
 # The largest and smallest sizes that single precision is asked for.
 SINGLE = (1e-18, 1e18)
 
@@ -176,14 +177,14 @@ def measured(job, extreme, values, solvers, programs):
             of = truth.get(solver, truth[""])
             modes = ["", "ftz", "up", "down", "zero"] if solver.startswith("qdist") else [""]
             for mode in modes:
-                said = answered(program, file, solver, mode)
+                said = answered(program, file, solver, mode, QUICKLY if job.quick else SECONDS)
                 yield judged(extreme, value, solver, mode, size, of, said)
 
 
-def answered(program, file, solver, mode):
+def answered(program, file, solver, mode, seconds):
     command = [program, "answers", file, *(["--mode", mode] if mode else []), f"{solver}:{DEFAULT.get(solver, 0)}"]
     try:
-        out = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS).stdout
+        out = subprocess.run(command, capture_output=True, text=True, timeout=seconds).stdout
     except subprocess.TimeoutExpired as late:
         out = (late.stdout or b"").decode()
     return {row["case"]: row for row in parsed(out) if len(row) == 9} if out else {}
