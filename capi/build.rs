@@ -53,7 +53,7 @@ const LIKEWISE: &str = "// Likewise in dimensions 3 to 6.";
 
 fn other_dimensions(text: &str) -> String {
     let functions =
-        text.split(LIKEWISE).filter_map(|before| Some(before.get(before.rfind("#[unsafe(no_mangle)]")?..)?));
+        text.split(LIKEWISE).filter_map(|before| before.get(before.rfind("#[unsafe(no_mangle)]")?..));
     let (functions, all) = (functions.collect::<Vec<_>>(), text.matches(LIKEWISE).count());
     let of = |n: u32| {
         functions

@@ -6,7 +6,7 @@ use crate::grasp_common;
 use clarabel::solver::{DefaultSettings, SolverStatus};
 use common::dice::Dice;
 use grasp_common::socp::LeastForces;
-use grasp_common::{contact_map, random_contact, recorded, value, vector, wide};
+use grasp_common::{contact_map, radii, random_contact, recorded, value, vector, wide};
 use qdist::grasp::{
     Contact, Contribution, ForceError, ForceOptions, ForceOutcome, ForceSolver, Forces, Friction, Norm, Primitive,
     WrenchFrame, WrenchSet, wrenches,
