@@ -52,8 +52,7 @@ fn inlined(file: &Path) -> io::Result<String> {
 const LIKEWISE: &str = "// Likewise in dimensions 3 to 6.";
 
 fn other_dimensions(text: &str) -> String {
-    let functions =
-        text.split(LIKEWISE).filter_map(|before| before.get(before.rfind("#[unsafe(no_mangle)]")?..));
+    let functions = text.split(LIKEWISE).filter_map(|before| before.get(before.rfind("#[unsafe(no_mangle)]")?..));
     let (functions, all) = (functions.collect::<Vec<_>>(), text.matches(LIKEWISE).count());
     let of = |n: u32| {
         functions
