@@ -46,12 +46,14 @@ def main():
     parser.add_argument("--flat", action="store_true", help="a single part: its files go to `out` itself")
     parser.add_argument("--copy", action="store_true", help="renew docs/report")
     parser.add_argument("--data-only", action="store_true", help="no pictures and no page")
+    parser.add_argument("--page-only", action="store_true", help="nothing is measured: pictures and page of what is there")
     arguments = parser.parse_args()
     begin = time.monotonic()
     for name in arguments.part or PARTS:
         job = Job(arguments.out, name, arguments.quick, arguments.flat)
         part = importlib.import_module(f"report.parts.{name.replace('-', '_')}")
-        part.measure(job)
+        if not arguments.page_only:
+            part.measure(job)
         if not arguments.data_only:
             job.write_text("part.md", part.tell(job))
     if not arguments.data_only:

@@ -93,7 +93,7 @@ def tell(job):
     for name, title in (("all", "All sets ({cases} pairs)"), ("fixtures", "The fixtures of a clone ({cases} pairs)")):
         mine = [row for row in totals if row["set"] == name]
         if not mine:
-            text.append("The larger sets are not beside this clone: they are left out.\n")
+            text.append("The larger sets, which lie beside the project and not in it, were not asked.\n")
             continue
         text.append(f"**{title.format(cases=mine[0]['cases'])}.** Times are medians over all pairs; ratios by family.\n")
         text.append(summary(mine, [row for row in ratios if row["set"] == name]))

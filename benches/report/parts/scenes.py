@@ -116,13 +116,15 @@ def tell(rows):
 
 def table(rows, sets, solvers):
     lines = []
-    for solver in solvers:
-        line = [solver]
-        for name in sets:
-            row = next((row for row in rows if (row["solver"], row["set"]) == (solver, name)), None)
-            cost = row and (f"{int(row['instructions']):,}" if row["instructions"] else f"{float(row['median_ns']):.0f} ns")
-            failed = row and 100 * float(row["failed"])
-            line.append("" if row is None else cost + (f" ({failed:.2g} % fail)" if failed else ""))
-        if any(line[1:]):
-            lines.append(line)
-    return tables.table(["instructions", *sets], lines)
+    for name in sets:
+        here = {row["solver"]: row for row in rows if row["set"] == name}
+        lines.append([name, *(cell(here.get(solver)) for solver in solvers)])
+    return tables.table(["instructions", *solvers], lines)
+
+
+def cell(row):
+    if row is None:
+        return ""
+    cost = f"{int(row['instructions']):,}" if row["instructions"] else f"{float(row['median_ns']):.0f} ns"
+    failed = 100 * float(row["failed"])
+    return cost + (f" ({failed:.2g} % fail)" if failed else "")
