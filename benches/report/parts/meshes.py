@@ -20,8 +20,6 @@ COLORS = {
     "walks of Section IV-B.1": ("#D55E00", "^"),
     "seeds of Section IV-D": ("#CC79A7", "v"),
     "these and our own": ("#009E73", "s"),
-    "FCL, deepest triangles": ("#000000", "P"),
-    "coal, deepest triangles": ("#7F7F7F", "X"),
 }
 # Smaller errors are drawn here.
 LEAST = 1e-4
@@ -66,7 +64,7 @@ def tell(job):
     queries = len({row["query"] for row in rows if row["group"] in groups})
     text = [INTRODUCTION.format(queries=queries, groups=len(groups), data=data)]
     draw(job, rows, groups)
-    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors, since most are 0, and what is below 0.01 % is drawn there. FCL and coal tell the deepest pair of triangles that meet, which is no depth of the bodies: it has no bound, and here it is below the least motion that frees them by the factor in the table."))
+    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors, since most are 0, and what is below 0.01 % is drawn there. The paper's variants are qdist with other walks or seeds."))
     text.append(summary(rows, groups))
     text.append(deepest(job))
     text.append(passages(job))
@@ -132,7 +130,7 @@ def deepest(job):
                 time = tables.duration(statistics.median(float(row["ns"]) for row in mine))
                 lines.append([f"{library}, {group}", f"{statistics.median(shares):.2g}", f"{min(shares):.2g} to {max(shares):.2g}", time])
     head = ["library, bodies", "their depth over DISP, median", "least to most", "median time"]
-    return "\nWhat people use instead: the deepest pair of triangles, as a share of the least motion (DISP) that frees the bodies.\n\n" + style.table(head, lines)
+    return "\nWhat people use instead: FCL and coal tell the deepest pair of triangles that meet. That is no depth of the bodies, and nothing bounds it; here it is as a share of the least motion (DISP) that frees them.\n\n" + style.table(head, lines)
 
 
 def passages(job):
@@ -149,5 +147,5 @@ def passages(job):
         lines.append(line)
     default = [float(row["upper"]) / float(row["planted"]) for row in rows if row["effort"] == "default"]
     off = sum(ratio > 1 + WITHIN for ratio in default)
-    text = f"\n**Where we lose**: narrow passages. Keys, sockets, linked rings and springs, each moved out of a free pose that is known: `upper` over that pose's distance. With default effort {off} of {len(default)} are off by more than 1 %, the worst {max(default):.3g} times.\n\n"
+    text = f"\n**Where we lose**: narrow passages. Keys, sockets, linked rings and springs, each moved out of a free pose that is known: `upper` over that pose's distance (below 1: something nearer was found). With default effort {off} of {len(default)} are off by more than 1 %, the worst {max(default):.3g} times.\n\n"
     return text + style.table(["query", "planted DISP", *EFFORTS], lines)

@@ -231,7 +231,7 @@ def judged(extreme, value, solver, mode, size, truth, said):
 
 INTRODUCTION = """## Stability: extreme bodies
 
-What happens where numbers are extreme: {pairs} random pairs a row, {rows} rows, each against the truth in quadruple precision. qdist is asked in every rounding mode, and with
+What happens where numbers are extreme: {pairs} random pairs a row (of meshes fewer), {rows} rows, each against the truth in quadruple precision. qdist is asked in every rounding mode, and with
 subnormal numbers flushed to zero, in double and in single precision; bodies are made in the usual mode before. Shapes that a solver does not have are left out for it.
 
 **False brackets of qdist: {false} of {answers} answers.** Whoever gives a depth alone fails where that is off by more than 1 % of it, and by more than a millionth of the bodies'
@@ -253,7 +253,7 @@ def tell(job):
     ]
     draw_failures(job, rows_, extremes)
     what = "Share of pairs that each solver fails on, a row an extreme, a column a solver"
-    text.append(style.shown(job, "failures", what, "Darker is worse: the share of pairs without an answer, or with one that is wrong, in %. An empty cell is 0. Hatched: not asked (out of the range of single precision)."))
+    text.append(style.shown(job, "failures", what, "Darker is worse: the share of pairs without an answer, or with one that is wrong, in %. An empty cell is 0. Hatched: not asked (out of the range of single precision, or a question that the solver does not know)."))
     draw_widths(job, ours, extremes)
     what = "Width of qdist's brackets, a row an extreme"
     text.append(style.shown(job, "widths", what, "How far an answer may be off, as it says itself: the median (dot) and the worst (end of the line) of each row, as a share of the bodies' size. Left is better. The default tolerance is 1e-6 of the depth, in single precision 1e-4."))
