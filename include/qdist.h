@@ -842,7 +842,7 @@ QDIST_API qdist_status qdist_unit_ball_f64(qdist_unit_f64 *unit, double radius);
 /// Makes an ellipsoid.
 ///
 /// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (semi axes or rotation), ROTATION (rotation:
-/// a column is not of unit length, to 1e-3).
+/// its columns are not orthonormal, to 1e-4).
 QDIST_API
 qdist_status qdist_unit_ellipsoid_f64(qdist_unit_f64 *unit,
                                       const qdist_ellipsoid_unit_f64 *shape);

@@ -6,7 +6,6 @@ use super::UnitSet;
 use super::sets::{positive, roundings};
 use crate::math::{Vector, largest, norm};
 use crate::scalar::Real;
-use crate::support::range::above;
 use crate::support::{BoxShape, Ellipsoid, Failure, ShapeError, Support};
 
 /// The Euclidean ball, `h = radius |u|`: with radius 1, d_Q is the ordinary penetration depth (paper, eq. 16).
@@ -115,13 +114,6 @@ impl<T: Real, const N: usize> UnitEllipsoid<T, N> {
     pub fn trusted(semi_axes: Vector<T, N>, rotation: SMatrix<T, N, N>) -> Self {
         let size = largest(&semi_axes);
         Self { columns: scaled_columns(semi_axes, rotation, size), size, inner: T::zero(), error: T::zero() }
-    }
-
-    /// An upper bound of |q|.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn extent(&self) -> T {
-        above(self.size * self.columns.iter().fold(T::zero(), |s, &x| s + x * x).root(), N * N)
     }
 }
 

@@ -112,6 +112,9 @@ pub(super) trait AnswersUnit<const N: usize>: 'static {
     fn inner_radius(&self, set: &Self::Set<'_>) -> f64 {
         set.inner_radius()
     }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.trusted().is_ok_and(|set| set.mirrored(signs))
+    }
     /// Trusts them: they were checked when the unit set was made.
     fn trusted(&self) -> Check<Self::Set<'_>>;
 }
@@ -173,5 +176,5 @@ unsafe extern "C" fn unit_vertex<S: AnswersUnit<N>, const N: usize>(
 unsafe extern "C" fn unit_mirrored<S: AnswersUnit<N>, const N: usize>(user: *mut c_void, signs: u32) -> i32 {
     // SAFETY: what the header asks of the caller of a mirror function; `user` is the set's.
     let of = unsafe { In::<S>::new(user.cast()) };
-    i32::from(of.get().and_then(S::trusted).is_ok_and(|set| set.mirrored(signs as u8)))
+    i32::from(of.get().is_ok_and(|of| of.mirrored(signs as u8)))
 }

@@ -96,7 +96,7 @@ pub extern "C" fn qdist_unit_ball_f64(unit: Out<qdist_unit_f64>, radius: f64) ->
 /// Makes an ellipsoid.
 ///
 /// Status: DIMENSION (shape->dimension), ARGUMENT (a semi axis is negative, or all are 0), NONFINITE (semi axes or rotation), ROTATION (rotation:
-/// a column is not of unit length, to 1e-3).
+/// its columns are not orthonormal, to 1e-4).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_unit_ellipsoid_f64(
     unit: Out<qdist_unit_f64>,

@@ -6,7 +6,7 @@ use qdist::qset::{CrossPolytope, Segment, UnitBox, UnitEllipsoid, Vertices};
 use qdist::support::ShapeError;
 
 macro_rules! unit {
-    ($struct:ty, $set:ident, |$s:ident| $($size:expr),+ $(; $($own:tt)+)?) => {
+    ($struct:ty, $set:ident, |$s:ident| $($size:expr),+) => {
         impl<const N: usize> AnswersUnit<N> for $struct {
             type Set<'a> = $set<f64, N>;
             fn stated(&self) -> Check<(Self::Set<'_>, f64)> {
@@ -20,30 +20,93 @@ macro_rules! unit {
                 // A struct that has become one of another dimension is none of this.
                 if $s.dimension as usize == N { Ok($set::trusted($($size),+)) } else { Err(QDIST_ERROR_DIMENSION) }
             }
-            $($($own)+)?
         }
     };
 }
 
-unit!(qdist_ellipsoid_unit_f64, UnitEllipsoid, |s| leading(&s.semi_axes), s.rotation()?;
-    /// Without a rotation there is none that rounding could have bent.
-    fn inner_radius(&self, set: &Self::Set<'_>) -> f64 {
-        let axes = self.semi_axes.iter().take(N);
-        if self.rotation.is_null() { axes.fold(f64::HUGE, |least, &x| least.at_most(x)) } else { set.inner_radius() }
-    }
-);
 unit!(qdist_box_unit_f64, UnitBox, |s| leading(&s.half));
 unit!(qdist_cross_unit_f64, CrossPolytope, |s| leading(&s.semi_axes));
 unit!(qdist_segment_unit_f64, Segment, |s| leading(&s.end));
 
-impl qdist_ellipsoid_unit_f64 {
-    fn rotation<const N: usize>(&self) -> Check<SMatrix<f64, N, N>> {
-        if self.rotation.is_null() {
-            return Ok(SMatrix::identity());
-        }
-        let list = self.rotation.array(Some(N * N))?;
-        Ok(SMatrix::from_fn(|i, j| list.get(N * i + j).copied().unwrap_or(f64::NAN)))
+/// What is done once, when the unit set is made, is the same code in every dimension; what queries ask is [`UnitEllipsoid`]'s.
+impl<const N: usize> AnswersUnit<N> for qdist_ellipsoid_unit_f64 {
+    type Set<'a> = UnitEllipsoid<f64, N>;
+    fn stated(&self) -> Check<(Self::Set<'_>, f64)> {
+        Ok((self.trusted()?, self.extent()?))
     }
+    fn inner_radius(&self, _set: &Self::Set<'_>) -> f64 {
+        self.within()
+    }
+    #[inline(always)]
+    fn trusted(&self) -> Check<Self::Set<'_>> {
+        let axes = first(&self.semi_axes, N)?;
+        // A struct that has become one of another dimension is none of this.
+        if self.dimension as usize != N {
+            return Err(QDIST_ERROR_DIMENSION);
+        }
+        let rotation = match self.matrix()? {
+            None => SMatrix::identity(),
+            Some(list) => SMatrix::from_fn(|i, j| list.get(N * i + j).copied().unwrap_or(f64::NAN)),
+        };
+        Ok(UnitEllipsoid::trusted(Vector::from_iterator(axes.iter().copied()), rotation))
+    }
+    fn mirrored(&self, signs: u8) -> bool {
+        self.is_mirrored(signs)
+    }
+}
+
+impl qdist_ellipsoid_unit_f64 {
+    fn axes(&self) -> Check<&[f64]> {
+        first(&self.semi_axes, dimension(self.dimension)?)
+    }
+
+    fn matrix(&self) -> Check<Option<&[f64]>> {
+        let n = dimension(self.dimension)?;
+        if self.rotation.is_null() { Ok(None) } else { self.rotation.array(Some(n * n)).map(Some) }
+    }
+
+    /// An upper bound of |q|, of numbers that are looked at: axes, and columns that are orthonormal to 1e-4, which are longer by less than 6e-4.
+    fn extent(&self) -> Check<f64> {
+        let (axes, n) = (self.axes()?, dimension(self.dimension)?);
+        semi_axes(axes)?;
+        if let Some(matrix) = self.matrix()? {
+            orthonormal(matrix, n)?;
+        }
+        length(axes.iter().fold(0.0, |most: f64, &x| most.at_least(x)) * 1.001)
+    }
+
+    /// The radius of a ball in it: such columns shorten by less than 6e-4, and where there is no rotation, none can be bent.
+    fn within(&self) -> f64 {
+        let least = self.axes().unwrap_or_default().iter().fold(f64::HUGE, |least, &x| least.at_most(x));
+        if self.rotation.is_null() { least } else { least * 0.999 }
+    }
+
+    /// Each axis must stay on its line.
+    fn is_mirrored(&self, signs: u8) -> bool {
+        let (Ok(n), Ok(matrix)) = (dimension(self.dimension), self.matrix()) else { return false };
+        let stays = |matrix: &[f64], j: usize| {
+            let column = || matrix.iter().skip(j).step_by(n.max(1)).enumerate().filter(|&(_, &x)| x != 0.0);
+            let flipped = column().filter(|(i, _)| signs >> i & 1 == 1).count();
+            flipped == 0 || flipped == column().count()
+        };
+        matrix.is_none_or(|matrix| (0..n).all(|j| stays(matrix, j)))
+    }
+}
+
+/// Are the columns of a row-major matrix orthonormal to 1e-4?
+fn orthonormal(matrix: &[f64], n: usize) -> Check {
+    finite(matrix)?;
+    for i in 0..n {
+        for j in 0..=i {
+            let column = |k: usize| matrix.iter().skip(k).step_by(n.max(1));
+            let product = column(i).zip(column(j)).fold(0.0, |s, (&x, &y)| s + x * y);
+            let off: f64 = if i == j { product - 1.0 } else { product };
+            if !(off.abs() <= 1e-4) {
+                return Err(QDIST_ERROR_ROTATION);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The hull of the origin and points that have been looked at before.
@@ -52,12 +115,20 @@ pub(super) struct Corners<'a, const N: usize> {
     list: List<'a, f64, N>,
 }
 
+impl<const N: usize> Corners<'_, N> {
+    /// (Once a dimension, for value and point.)
+    #[inline(never)]
+    fn farthest(&self, u: &Vector<f64, N>) -> Vector<f64, N> {
+        Vector::from(*self.list.scan::<false>(&near_unit(one_by_one(u))))
+    }
+}
+
 impl<const N: usize> UnitSet<f64, N> for Corners<'_, N> {
     fn value(&self, u: &Vector<f64, N>) -> Result<f64, Failure> {
-        Ok(self.mapping(u).map_or(0.0, |point| point.dot(u)).at_least(0.0))
+        Ok(self.farthest(u).dot(u).at_least(0.0))
     }
     fn mapping(&self, u: &Vector<f64, N>) -> Option<Vector<f64, N>> {
-        Some(Vector::from(*self.list.scan::<false>(&near_unit(one_by_one(u)))))
+        Some(self.farthest(u))
     }
     fn vertex_count(&self) -> usize {
         self.points.len()
