@@ -28,7 +28,7 @@ counted() {
 if [ -n "$write" ]; then cp "$now" "$golden"; fi
 # Names have commas, numbers have none.
 awk '
-    { key = $0; sub(/,[0-9]*$/, "", key); value = $0; sub(/.*,/, "", value) }
+    { key = $0; sub(/,[0-9]*$/, "", key); value = $0; sub(/.*,/, "", value); value += 0 }
     FNR < 3 { next }
     NR == FNR { was[key] = value; next }
     !(key in was) { print key ": not among the golden ones"; failed++; next }
