@@ -4,7 +4,10 @@ import datetime
 import importlib.metadata
 import os
 import platform
+import re
 import subprocess
+
+from report.job import ROOT
 
 
 def said(*command):
@@ -37,6 +40,12 @@ def python(package):
         return None
 
 
+def crate(name, lock):
+    """As a Cargo.lock has it."""
+    found = re.search(rf'name = "{name}"\nversion = "(.*)"', (ROOT / lock).read_text())
+    return found and found[1]
+
+
 def rows():
     """Pairs of what and which."""
     peers = {
@@ -45,6 +54,8 @@ def rows():
         "Bullet": debian("libbullet-dev"),
         "MuJoCo": python("mujoco"),
         "coal": python("coal"),
+        "parry": crate("parry3d-f64", "benches/report/parry/Cargo.lock"),
+        "Clarabel": crate("clarabel", "Cargo.lock"),
         "SciPy": python("scipy"),
     }
     return [
