@@ -2,7 +2,8 @@
 //!
 //! `cargo bench -p qdist-benches --bench forces -- [--quick] OUT` writes `OUT/forces.csv`: a row for every number of contacts, norm, solver and tolerance, over
 //! random force-closed grasps of soft fingers. The error is that of the size, relative to what Clarabel says at its finest; the residual how far the forces are
-//! from equilibrium, of the wrench. Of Clarabel the time has its set-up in it, which belongs to every new wrench set.
+//! from equilibrium, of the wrench. Times
+//! begin with the contacts: what is made of them for every new grasp, primitives or a program, is in them.
 
 use clarabel::solver::DefaultSettings;
 use qdist::grasp::{Contact, ForceOptions, ForceSolver, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
@@ -19,7 +20,6 @@ const ROUNDS: usize = 5;
 
 struct Grasp {
     contacts: Vec<Contact<f64>>,
-    primitives: Vec<Primitive<f64>>,
     load: Vector<f64, 6>,
 }
 
@@ -43,7 +43,7 @@ fn grasps(dice: &mut Dice, contacts: usize, count: usize) -> Vec<Grasp> {
         wrenches(&contacts, &frame(), &mut primitives).expect("primitives");
         if memory.solver().force_closure(&WrenchSet::new(&primitives, Norm::LInf), &Options::default()).is_closed() {
             let load = Vector::from(dice.direction::<6>());
-            found.push(Grasp { contacts, primitives, load });
+            found.push(Grasp { contacts, load });
         }
     }
     found
@@ -55,9 +55,10 @@ type Said = (f64, f64, f64);
 fn ours(grasp: &Grasp, norm: Norm, relative: f64) -> Said {
     let options = ForceOptions { relative, ..ForceOptions::default() };
     let mut shares = vec![Vector::zeros(); grasp.contacts.len()];
+    let mut primitives = vec![Primitive::empty(); grasp.contacts.len()];
     let begin = Instant::now();
-    let forces =
-        ForceSolver::new().resist(&WrenchSet::new(&grasp.primitives, norm), &grasp.load, &options, &mut shares);
+    let primitives = wrenches(&grasp.contacts, &frame(), &mut primitives).expect("primitives");
+    let forces = ForceSolver::new().resist(&WrenchSet::new(primitives, norm), &grasp.load, &options, &mut shares);
     let ns = begin.elapsed().as_nanos() as f64;
     let forces = forces.expect("forces");
     (forces.upper, forces.residual, ns)

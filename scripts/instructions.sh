@@ -13,8 +13,9 @@ compiler="# $(rustc --version | cut -d ' ' -f 1-2), $(uname -sm)"
 command -v valgrind >/dev/null || { echo "SKIPPED: valgrind is not there"; exit 0; }
 [ -n "$write" ] || [ "$(head -n 1 "$golden")" = "$compiler" ] || { echo "SKIPPED: golden instructions are of another compiler ($(head -n 1 "$golden"))"; exit 0; }
 
-# Of so many rounds.
+# Of so many rounds. (A query that fails is no measure.)
 counted() {
+    "$program" "$1" 1 || { echo "$1 fails" >&2; exit 1; }
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "$1" "$2" 2>&1 | sed -n 's/.*Collected : //p'
 }
 

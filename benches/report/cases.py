@@ -2,6 +2,9 @@
 
 import math
 import random
+from decimal import Decimal
+
+from report.job import run
 
 
 class Dice(random.Random):
@@ -88,6 +91,21 @@ def shape(dice, kind, size=1.0):
         return "hull", [size * x for _ in range(int(kind[5:])) for x in dice.direction()]
     count = {"sphere": 1, "box": 3, "ellipsoid": 3}.get(kind, 2)
     return kind, [length() for _ in range(count)]
+
+
+def kept(job, oracle, count, draw, most=40):
+    """`count` cases of those that `draw(k)` makes: the first that overlap in truth. (Along a random direction bodies may seem to overlap and be apart.) Where too few
+    of `most` times as many do, the others make up for them."""
+    file = job.path("drawn.cases")
+    inside, others, k = [], [], 0
+    while len(inside) < count and k < most * count:
+        texts = [draw(k + i) for i in range(count)]
+        k += count
+        write(file, texts)
+        truth = [line.split(",") for line in run([oracle, file, "1e-6", "400"]).splitlines()[1:]]
+        for text, (_, lower, *_) in zip(texts, truth, strict=True):
+            (inside if Decimal(lower) > 0 else others).append(text)
+    return (inside + others)[:count]
 
 
 def overlapping(dice, kinds, share):

@@ -60,7 +60,7 @@ def rows():
     }
     return [
         ("Date", datetime.date.today().isoformat()),
-        ("Commit", said("git", "describe", "--always", "--dirty") or "unknown"),
+        ("Commit that wrote this page", said("git", "describe", "--always", "--dirty") or "unknown"),
         ("Machine", f"{processor()}, {os.cpu_count()} cores seen, {platform.machine()}, {platform.system()} {platform.release()}"),
         ("Compilers", "; ".join(filter(None, [said("rustc", "--version"), said("c++", "--version")]))),
         ("Counted by", said("valgrind", "--version") or "valgrind is missing: no instructions"),

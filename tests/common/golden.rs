@@ -41,7 +41,9 @@ impl Group {
 
     /// Fowler, Noll and Vo's hash (FNV-1a) of the numbers as `f64`, which tells every `f32`.
     fn hash<'a, T: Real>(&mut self, numbers: impl Iterator<Item = &'a T>) {
-        for byte in numbers.flat_map(|x| x.to_f64().to_bits().to_le_bytes()) {
+        // (Which NaN it is depends on the machine.)
+        let bits = |x: &T| if x.to_f64().is_nan() { u64::MAX } else { x.to_f64().to_bits() };
+        for byte in numbers.flat_map(|x| bits(x).to_le_bytes()) {
             self.bits = (self.bits ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }

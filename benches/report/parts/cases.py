@@ -112,11 +112,11 @@ def summary(totals, ratios):
 def line(row, ratios):
     ours = row["solver"] in compare_table.QDIST
     failed = row["failed"]
-    broken = [f"{row[key]} {key}" for key in ("hangs", "crashes") if row[key] != "0"]
+    broken = [f"{key}: {row[key]}" for key in ("hangs", "crashes") if row[key] != "0"]
     if broken:
         failed += f" ({', '.join(broken)})"
     if ours:
-        failed += f" ({row['false_brackets']} false brackets)"
+        failed += f" (false brackets: {row['false_brackets']})"
     of = [float(r["ratio"]) for r in ratios if r["peer"] == row["solver"] and int(r["cases"]) >= LEAST]
     spread = f"{min(of):.2g} to {max(of):.2g}, median {statistics.median(of):.2g}" if of else ""
     return [NAMES[row["solver"]], failed, f"{int(row['converged']):,}" if ours else "-", tables.duration(float(row["median_ns"])), spread]

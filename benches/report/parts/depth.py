@@ -52,23 +52,23 @@ def families(job):
 
 
 def sets(family, quick):
-    """(set, cases) of a family: random overlaps, 2 to 30 % of what the bodies measure along the line between them; ellipsoids also deep in each other."""
+    """(set, count, function of k that makes a case) of a family: random overlaps, up to 30 % of what the bodies measure along the line between them; ellipsoids also deep in
+    each other."""
     dice = cases.Dice(f"depth {family}")
     kinds = FAMILIES[family]
     count = {"hull-500": 20, "hull-5000": 6}.get(family, 60) // (4 if quick else 1)
     if family != "ellipsoids-deep":
-        yield "std", [
-            cases.case(f"{family}-{k}", *cases.overlapping(dice, kinds, dice.between(0.02, 0.3))) for k in range(max(count, 3))
-        ]
+        yield "std", max(count, 3), lambda k: cases.case(f"{family}-{k}", *cases.overlapping(dice, kinds, dice.between(0.02, 0.3)))
         return
     for aspect in (2, 10):
-        texts = []
-        for k in range(count // 2):
+
+        def draw(k, aspect=aspect):
             axes = lambda: [dice.between(0.6, 1), dice.between(0.6, 1), 0.8 * aspect]
             a, b = (cases.Body("ellipsoid", axes(), dice.rotation()) for _ in range(2))
             b.translation = [0.5 * x for x in dice.direction()]
-            texts.append(cases.case(f"deep{aspect}-{k}", a, b, size=0.8 * aspect))
-        yield f"aspect {aspect}", texts
+            return cases.case(f"deep{aspect}-{k}", a, b, size=0.8 * aspect)
+
+        yield f"aspect {aspect}", count // 2, draw
 
 
 def measure(job):
@@ -118,9 +118,9 @@ class Measured:
 def family_rows(job, family, output, columns, programs, asked):
     program, parry, oracle = programs
     rows = []
-    for name, texts in sets(family, job.quick):
+    for name, count, draw in sets(family, job.quick):
         file = job.path(f"{family}-{name}.cases".replace(" ", "-"))
-        cases.write(file, texts)
+        cases.write(file, cases.kept(job, oracle, count, draw))
         truth = {row["case"]: row for row in parsed(run([oracle, file, "1e-15"]))}
         single = {row["case"]: row for row in parsed(run([oracle, file, "float", "1e-15"]))}
         answers = answered(job, program, file, asked)

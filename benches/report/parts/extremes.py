@@ -11,7 +11,7 @@ from report.job import run
 from report.parts.depth import parsed
 
 SOLVERS = {"f64": "qdist", "f32": "qdist f32"}
-# An answer counts as failed where its upper end is off by more than this share of the truth, or of the size.
+# An answer counts as failed where its bracket is wider than this share of its upper end, and of the size.
 OFF, BLUR = Decimal("0.01"), {"f64": Decimal("1e-6"), "f32": Decimal("2e-5")}
 
 
@@ -35,8 +35,8 @@ def judged(extreme, value, scalar, mode, answers):
             none += 1
             continue
         rounding = Decimal("1e-30") * max(abs(most), size)
-        false += lower > most + rounding or (not least.is_nan() and upper < least - rounding) or proved > upper + rounding
-        failed += upper > most + max(OFF * abs(most), BLUR[scalar] * size)
+        false += lower > most + rounding or (not least.is_nan() and upper < least - rounding) or proved.is_nan() or proved > upper + rounding
+        failed += upper - lower > max(OFF * abs(upper), BLUR[scalar] * size)
         widths.append(float((upper - lower) / size))
     return {
         "extreme": extreme,

@@ -155,6 +155,6 @@ def draw(job, rows, names, fits):
 
 def lost(names, fits):
     """Growth that is steeper than in proportion."""
-    what = "instructions" if any(fits[name, "instructions"] for name in names) else "ns"
-    steep = [f"{name} (exponent {fits[name, what][0]:.1f})" for name in names if fits[name, what] and fits[name, what][0] > 1]
+    best = {name: fits[name, "instructions"] or fits[name, "ns"] for name in names}
+    steep = [f"{name} (exponent {fit[0]:.1f})" for name, fit in best.items() if fit and fit[0] > 1]
     return f"\n**Where we lose:** work grows faster than in proportion over {'; '.join(steep)}.\n" if steep else "\nNothing here grows faster than in proportion.\n"

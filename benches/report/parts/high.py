@@ -8,6 +8,7 @@ import statistics
 from report import build, grasps, rust, style
 from report.cases import Dice
 from report.job import ROOT, run
+from report.tables import duration
 
 DQ = ["dq.csv", "fit.csv", "anytime.csv"]
 # Narrower brackets are drawn here.
@@ -18,7 +19,7 @@ SIDES = [4, 8, 16, 32, 64]
 RELATIVE = ["0.5", "1e-1", "1e-2", "1e-3", "1e-4"]
 # Grasps that hold less than this are left out: of them a pyramid may hold nothing, and any error is possible.
 HOLDS = 0.02
-NORMS = {"L1": "one unit of force among all contacts (L1)", "Linf": "one unit at each (L-infinity)"}
+NORMS = ("L1", "Linf")
 
 
 def measure(job):
@@ -191,18 +192,11 @@ def finish(figure, axes, here, xlabel, ylabel):
         ax.set_xlabel(xlabel)
 
 
-def duration(ns):
-    for unit, size in (("s", 1e9), ("ms", 1e6), ("µs", 1e3)):
-        if ns >= size:
-            return f"{ns / size:.3g} {unit}"
-    return f"{ns:.0f} ns"
-
-
 def finest(rows, name, most=1.01e-4):
-    """The converged run with the smallest tolerance of at least 1e-4, and of these the fastest."""
+    """The converged run with the smallest tolerance of at least 1e-4, and of these the one with the most memory."""
     good = [row for row in rows if row["case"] == name and row["scalar"] == "f64" and row["outcome"] == "converged" and float(row["eps"]) >= 0.99e-4]
     good = [row for row in good if float(row["eps"]) <= most]
-    return min(good, key=lambda row: float(row["median_ns"]), default=None)
+    return min(good, key=lambda row: (float(row["eps"]), -int(row["max_facets"])), default=None)
 
 
 def dimensions(rows):

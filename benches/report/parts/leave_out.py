@@ -96,12 +96,13 @@ WORK = {
 
 
 def work(job):
-    program = build.build(job)
+    program, oracle = build.build(job), build.build_oracle(job)
     rows = []
     for what, (kinds, share) in WORK.items():
         dice = cases.Dice(f"work {what}")
         file = job.path("work.cases")
-        cases.write(file, [cases.case(str(k), *cases.overlapping(dice, kinds, share)) for k in range(10 if job.quick else 40)])
+        count, draw = 10 if job.quick else 40, lambda k: cases.case(str(k), *cases.overlapping(dice, kinds, share))
+        cases.write(file, cases.kept(job, oracle, count, draw) if share > 0 else [draw(k) for k in range(count)])
         asked = [f"{solver}:{tolerance}" for solver, tolerance in DEFAULT.items()]
         counts = counted(job, program, file, asked, [])
         used = [line.split(",") for line in run([program, "used", file, *asked]).splitlines()[1:]]

@@ -70,7 +70,7 @@ def rows(measured, family, name, file, counted, truth, flags, judge):
             "failed": f"{sum(error is None or error > FAILED for error in judged) / len(judged):.4f}",
             "median_error": f"{statistics.median(good):.3g}" if good else "",
             "instructions": counts.get(solver, ""),
-            "median_ns": f"{statistics.mean(spent[solver]):.1f}" if spent.get(solver) else "",
+            "median_ns": f"{statistics.median(spent[solver]):.1f}" if spent.get(solver) else "",
         }
 
 

@@ -203,7 +203,7 @@ WORDS = {"beyond": "energy", "depth_jump": "jump of depth", "normal_jump": "jump
 def lost(rows):
     names = {"qdist": "in double precision", "qdist f32": f"in single precision, at a tolerance of {TOLERANCES['qdist f32']}"}
     said = [f"{name}: {'; '.join(behind(rows, solver)) or 'nowhere in these scenes, but in last digits'}" for solver, name in names.items()]
-    return f"\n**Where we lose**, {'. '.join(said)}.\n"
+    return "".join(f"\n**Where we lose**, {words}.\n" for words in said)
 
 
 def behind(rows, solver):
