@@ -3,6 +3,7 @@
 import shutil
 import statistics
 import subprocess
+import tempfile
 
 from report import build, cases, style
 from report.job import run
@@ -203,16 +204,14 @@ def counted(job, program, file, asked, without, flags=()):
     """Instructions a query, by callgrind."""
     if not shutil.which("valgrind"):
         return {}
-    folder = job.built / "counts"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/c"]
-    said = parsed(run([*command, program, "count", file, *asked, *mine(without, asked), *flags]))
     counts = {}
-    for k, row in enumerate(said):
-        _, once, thrice = (total(folder / f"c.{3 * k + dump}") for dump in (1, 2, 3))
-        if int(row["cases"]):
-            counts[row["solver"]] = round((thrice - once) / (2 * int(row["cases"])))
+    with tempfile.TemporaryDirectory(dir=job.built) as folder:
+        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/c"]
+        said = parsed(run([*command, program, "count", file, *asked, *mine(without, asked), *flags]))
+        for k, row in enumerate(said):
+            _, once, thrice = (total(f"{folder}/c.{3 * k + dump}") for dump in (1, 2, 3))
+            if int(row["cases"]):
+                counts[row["solver"]] = round((thrice - once) / (2 * int(row["cases"])))
     return counts
 
 
