@@ -6,9 +6,10 @@
 //! begin with the contacts: what is made of them for every new grasp, primitives or a program, is in them.
 
 use clarabel::solver::DefaultSettings;
-use qdist::grasp::{Contact, ForceOptions, ForceSolver, Friction, Norm, Primitive, WrenchFrame, WrenchSet, wrenches};
+use qdist::grasp::{Contact, ForceOptions, ForceSolver, Norm, Primitive, WrenchSet, wrenches};
 use qdist::{Options, Vector, Workspace};
 use qdist_benches::common::dice::Dice;
+use qdist_benches::fingertips::{fingertip, frame};
 use qdist_benches::grasp_common::socp::LeastForces;
 use std::error::Error;
 use std::fmt::Write;
@@ -21,17 +22,6 @@ const ROUNDS: usize = 5;
 struct Grasp {
     contacts: Vec<Contact<f64>>,
     load: Vector<f64, 6>,
-}
-
-fn frame() -> WrenchFrame<f64> {
-    WrenchFrame::new(Vector::zeros(), 1.0).expect("a frame")
-}
-
-fn fingertip(dice: &mut Dice) -> Contact<f64> {
-    let p = Vector::<f64, 3>::from(dice.direction::<3>());
-    let n = (Vector::<f64, 3>::from(dice.direction::<3>()) * 0.3 - p).normalize();
-    let friction = Friction::Soft { mu: dice.range(0.3, 1.0), mus: dice.range(0.1, 0.4) };
-    Contact::new(p, n, friction).expect("a contact")
 }
 
 fn grasps(dice: &mut Dice, contacts: usize, count: usize) -> Vec<Grasp> {

@@ -5,12 +5,13 @@
 //! such questions are answered in a second. All in `f64`, in one workspace of 512 vertices and 4096 facets.
 
 use qdist::grasp::{
-    Contact, Finger, ForceModel, ForceOptions, ForceSolver, Friction, HandContact, Jacobian, Layout, Norm, Primitive,
-    PyramidalCone, Refined, WrenchFrame, WrenchSet, default_tolerance, linearized, wrenches,
+    Contact, Finger, ForceModel, ForceOptions, ForceSolver, HandContact, Jacobian, Layout, Norm, Primitive,
+    PyramidalCone, Refined, WrenchSet, default_tolerance, linearized, wrenches,
 };
 use qdist::qset::Ball;
 use qdist::{Answer, Options, Outcome, Vector, Workspace};
 use qdist_benches::common::dice::Dice;
+use qdist_benches::fingertips::{fingertip, frame};
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -32,18 +33,6 @@ impl Grasp {
     fn set(&self, norm: Norm) -> WrenchSet<'_, f64> {
         WrenchSet::new(&self.primitives, norm)
     }
-}
-
-fn frame() -> WrenchFrame<f64> {
-    WrenchFrame::new(Vector::zeros(), 1.0).expect("a frame")
-}
-
-/// A soft fingertip that presses roughly towards the middle of the unit ball.
-fn fingertip(dice: &mut Dice) -> Contact<f64> {
-    let p = Vector::<f64, 3>::from(dice.direction::<3>());
-    let n = (Vector::<f64, 3>::from(dice.direction::<3>()) * 0.3 - p).normalize();
-    let friction = Friction::Soft { mu: dice.range(0.3, 1.0), mus: dice.range(0.1, 0.4) };
-    Contact::new(p, n, friction).expect("a contact")
 }
 
 /// The d of the grasp with cones of this layout, over the exact one: what a tool that linearises them would report.

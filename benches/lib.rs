@@ -2,6 +2,7 @@
 
 #[path = "../tests/common/mod.rs"]
 pub mod common;
+pub mod fingertips;
 #[path = "../tests/grasp_common/mod.rs"]
 pub mod grasp_common;
 #[path = "../tests/mesh_common/mod.rs"]

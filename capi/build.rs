@@ -52,15 +52,12 @@ fn inlined(file: &Path) -> io::Result<String> {
 const LIKEWISE: &str = "// Likewise in dimensions 3 to 6.";
 
 fn other_dimensions(text: &str) -> String {
-    let functions = text.split(LIKEWISE).filter_map(|before| before.get(before.rfind("#[unsafe(no_mangle)]")?..));
-    let (functions, all) = (functions.collect::<Vec<_>>(), text.matches(LIKEWISE).count());
-    let of = |n: u32| {
-        functions
-            .iter()
-            .take(all)
-            .map(move |f| f.replace("2_f64(", &format!("{n}_f64(")).replace("::<2>", &format!("::<{n}>")))
-    };
-    (3..=6).flat_map(of).collect()
+    let functions: Vec<_> = text
+        .match_indices(LIKEWISE)
+        .filter_map(|(end, _)| text.get(text.get(..end)?.rfind("#[unsafe(no_mangle)]")?..end))
+        .collect();
+    let of = |f: &&str, n| f.replace("2_f64(", &format!("{n}_f64(")).replace("::<2>", &format!("::<{n}>"));
+    (3..=6).flat_map(|n| functions.iter().map(move |f| of(f, n))).collect()
 }
 
 fn main() -> io::Result<()> {

@@ -1,12 +1,12 @@
 /* instructions NAME ROUNDS: asks a fixed list of queries so many times; scripts/instructions.sh counts what a round takes.
    Without arguments: the names. */
 #include "dice.h"
-#include "qdist_grasp.h"
+#include "fingertips.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { POSES = 16, CORNERS = 32, TIPS = 4 };
+enum { POSES = 16, CORNERS = 32 };
 static uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 64, 2048)];
 static int failures;
 
@@ -69,7 +69,6 @@ PAIRS(f64, double)
 
 /* Four soft fingertips. */
 static void grasp(char question, int rounds) {
-    static const double normals[TIPS][3] = {{0.6, 0.8, 0}, {-0.6, 0.8, 0}, {0, -0.6, 0.8}, {0, -0.6, -0.8}};
     const qdist_wrench_frame_f64 frame = {{0, 0, 0}, 1};
     const double load[6] = {0.1, -0.2, 0.3, 0.02, -0.03, 0.01};
     qdist_primitive_f64 primitives[TIPS];
@@ -81,11 +80,7 @@ static void grasp(char question, int rounds) {
     qdist_forces_f64 forces;
     qdist_solver *solver;
     qdist_set_f64 set;
-    memset(tips, 0, sizeof tips);
-    for (int i = 0; i < TIPS; i++) {
-        for (int k = 0; k < 3; k++) tips[i].normal[k] = normals[i][k], tips[i].position[k] = -normals[i][k];
-        tips[i].friction = QDIST_SOFT, tips[i].mu = 0.5, tips[i].mus = 0.1;
-    }
+    four_fingertips(tips);
     if (qdist_primitives_f64(tips, TIPS, &frame, 0, 0, primitives, NULL) || qdist_set_wrenches_f64(&set, &wrenches)) failures++;
     if (qdist_solver_init_f64(memory, sizeof memory, 6, 64, 2048, &solver)) failures++;
     closed.struct_size = sizeof closed, result.struct_size = sizeof result, forces.struct_size = sizeof forces;

@@ -1,5 +1,5 @@
 /* How much stack a query takes: runs it on a painted stack of its own and looks how far the paint is gone. */
-#include "qdist_grasp.h"
+#include "fingertips.h"
 #include <stdio.h>
 #include <string.h>
 #include <ucontext.h>
@@ -128,7 +128,6 @@ static void distribute(void) {
 }
 
 /* A grasp of four soft fingertips, and what is asked of it. */
-enum { TIPS = 4 };
 static qdist_contact_f64 tips[TIPS];
 static const qdist_wrench_frame_f64 grasp_frame = {{0, 0, 0}, 1};
 static qdist_primitive_f64 primitives[TIPS];
@@ -136,12 +135,7 @@ static qdist_wrenches_f64 grasp = {primitives, TIPS, QDIST_LINF};
 static qdist_result_f64 grasp_result;
 
 static void primitives_of_tips(void) {
-    static const double normals[TIPS][3] = {{0.6, 0.8, 0}, {-0.6, 0.8, 0}, {0, -0.6, 0.8}, {0, -0.6, -0.8}};
-    memset(tips, 0, sizeof tips);
-    for (int i = 0; i < TIPS; i++) {
-        for (int k = 0; k < 3; k++) tips[i].normal[k] = normals[i][k], tips[i].position[k] = -normals[i][k];
-        tips[i].friction = QDIST_SOFT, tips[i].mu = 0.5, tips[i].mus = 0.1;
-    }
+    four_fingertips(tips);
     if (qdist_primitives_f64(tips, TIPS, &grasp_frame, 0, 0, primitives, NULL)) failures++;
 }
 

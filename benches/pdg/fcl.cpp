@@ -2,57 +2,20 @@
 //
 //     pdg_fcl IN OUT ROUNDS
 //
-// IN: vertices and triangles of A (two counts, coordinates, indices), the same for B, the number of poses, and for every pose the rotation row by
-// row and the translation of A in the frame of B. OUT, a line for every pose: collides (0 or 1), median ns, distance, median ns. Poses are asked in
+// IN as exchange.hpp says. OUT, a line for every pose: collides (0 or 1), median ns, distance, median ns. Poses are asked in
 // rounds, so that no query follows itself.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <vector>
 
+#include "exchange.hpp"
+
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
-using Clock = std::chrono::steady_clock;
-
-namespace {
-
-std::shared_ptr<Model> read_mesh(std::istream &in) {
-    std::size_t vertices = 0, triangles = 0;
-    in >> vertices >> triangles;
-    std::vector<fcl::Vector3d> points(vertices);
-    for (auto &p : points) in >> p[0] >> p[1] >> p[2];
-    std::vector<fcl::Triangle> faces;
-    for (std::size_t i = 0; i < triangles; ++i) {
-        std::size_t a = 0, b = 0, c = 0;
-        in >> a >> b >> c;
-        faces.emplace_back(a, b, c);
-    }
-    auto model = std::make_shared<Model>();
-    model->beginModel();
-    model->addSubModel(points, faces);
-    model->endModel();
-    return model;
-}
-
-double median(std::vector<double> times) {
-    std::sort(times.begin(), times.end());
-    return times.empty() ? 0 : times[times.size() / 2];
-}
-
-template <class Ask>
-double nanoseconds(Ask ask) {
-    const auto begin = Clock::now();
-    ask();
-    return std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
-}
-
-}  // namespace
 
 int main(int argc, char **argv) {
     if (argc != 4) {
@@ -60,7 +23,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     std::ifstream in(argv[1]);
-    const auto a = read_mesh(in), b = read_mesh(in);
+    const auto a = read_mesh<Model, fcl::Vector3d, fcl::Triangle>(in), b = read_mesh<Model, fcl::Vector3d, fcl::Triangle>(in);
     std::size_t count = 0;
     in >> count;
     std::vector<fcl::Transform3d> poses(count, fcl::Transform3d::Identity());

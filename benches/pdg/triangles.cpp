@@ -2,7 +2,7 @@
 //
 //     triangles IN OUT ROUNDS
 //
-// IN as fcl.cpp reads it. OUT, a line for every pose: depth (0: no contact), median ns.
+// IN as exchange.hpp says. OUT, a line for every pose: depth (0: no contact), median ns.
 #ifdef COAL
 #include <coal/BVH/BVH_model.h>
 #include <coal/collision.h>
@@ -24,35 +24,17 @@ using Result = fcl::CollisionResultd;
 #endif
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <vector>
+
+#include "exchange.hpp"
 
 namespace {
 
 constexpr std::size_t CONTACTS = 1000000;
-
-std::shared_ptr<Model> read_mesh(std::istream &in) {
-    std::size_t vertices = 0, triangles = 0;
-    in >> vertices >> triangles;
-    std::vector<Vector> points(vertices);
-    for (auto &p : points) in >> p[0] >> p[1] >> p[2];
-    std::vector<library::Triangle> faces;
-    for (std::size_t i = 0; i < triangles; ++i) {
-        std::size_t a = 0, b = 0, c = 0;
-        in >> a >> b >> c;
-        faces.emplace_back(a, b, c);
-    }
-    auto model = std::make_shared<Model>();
-    model->beginModel();
-    model->addSubModel(points, faces);
-    model->endModel();
-    return model;
-}
 
 Pose read_pose(std::istream &in) {
     Eigen::Matrix3d turn;
@@ -91,7 +73,7 @@ int main(int argc, char **argv) {
         return 2;
     }
     std::ifstream in(argv[1]);
-    const auto a = read_mesh(in), b = read_mesh(in);
+    const auto a = read_mesh<Model, Vector, library::Triangle>(in), b = read_mesh<Model, Vector, library::Triangle>(in);
     std::size_t count = 0;
     in >> count;
     std::vector<Pose> poses;
@@ -107,13 +89,8 @@ int main(int argc, char **argv) {
     for (const Pose &pose : poses) {
         std::vector<double> times;
         double depth = 0;
-        for (int round = 0; round < std::atoi(argv[3]); ++round) {
-            const auto begin = std::chrono::steady_clock::now();
-            depth = deepest(*a, pose, *b, rest);
-            times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
-        }
-        std::sort(times.begin(), times.end());
-        out << depth << ' ' << times[times.size() / 2] << '\n';
+        for (int round = 0; round < std::atoi(argv[3]); ++round) times.push_back(nanoseconds([&] { depth = deepest(*a, pose, *b, rest); }));
+        out << depth << ' ' << median(times) << '\n';
     }
     return out ? 0 : 1;
 }

@@ -49,7 +49,7 @@ def build_parry(job):
 def build_pdg(job):
     """Compiles FCL's part of the bench of meshes, and returns its path."""
     source = ROOT / "benches/pdg/fcl.cpp"
-    return made(job.built / "pdg_fcl", [source], [*cxx(), *FLAGS, "-isystem", EIGEN, source, "-lfcl", "-lccd"])
+    return made(job.built / "pdg_fcl", [source, source.with_name("exchange.hpp")], [*cxx(), *FLAGS, "-isystem", EIGEN, source, "-lfcl", "-lccd"])
 
 
 def build_triangles(job):
@@ -58,7 +58,7 @@ def build_triangles(job):
     programs = {"FCL": (["-isystem", EIGEN], ["-lfcl", "-lccd"])}
     if is_here(job, coal()):
         programs["coal"] = (["-DCOAL", *(word for folder in coal()["includes"] for word in ("-isystem", folder))], coal()["link"])
-    return {name: made(job.built / f"triangles_{name}", [source], [*cxx(), *FLAGS, *flags, source, *link]) for name, (flags, link) in programs.items()}
+    return {name: made(job.built / f"triangles_{name}", [source, source.with_name("exchange.hpp")], [*cxx(), *FLAGS, *flags, source, *link]) for name, (flags, link) in programs.items()}
 
 
 def build_growth(job):
@@ -70,7 +70,7 @@ def build_growth(job):
 def build_extremes(job):
     """Compiles `extremes`, which has the library and its own truth, and returns its path."""
     sources = [CPP / "extremes.cpp", library()]
-    return made(job.built / "extremes", sources, [*cxx(), "-std=gnu++17", "-O2", f"-I{ROOT / 'include'}", *sources, "-lquadmath"])
+    return made(job.built / "extremes", [*sources, CPP / "environment.hpp"], [*cxx(), "-std=gnu++17", "-O2", f"-I{ROOT / 'include'}", *sources, "-lquadmath"])
 
 
 def build_oracle(job):

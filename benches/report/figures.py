@@ -6,6 +6,7 @@ A table stands between `<!-- figures: NAME -->` and `<!-- figures end -->`, and 
 (SENTENCES). Without --write nothing is changed, and what differs is an error; so is anything else in README that looks like a measurement.
 """
 
+import functools
 import re
 import statistics
 import sys
@@ -19,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs/report"
 
 
+@functools.cache
 def rows(name):
     found = tables.read(FOLDER / name)
     if not found:
@@ -218,8 +220,9 @@ def main():
         file.write_text(text)
     elif text != old:
         print("README's figures are not those of docs/report: benches/report/figures.py --write renews them")
-    print(f"figures: {0 if loose or text != old else 1} passed, {1 if loose or text != old and not write else 0} failed")
-    return 1 if loose or text != old and not write else 0
+    failed = bool(loose) or (text != old and not write)
+    print(f"figures: {int(not failed)} passed, {int(failed)} failed")
+    return int(failed)
 
 
 if __name__ == "__main__":

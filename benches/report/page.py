@@ -8,7 +8,7 @@ from pathlib import Path
 
 import markdown
 
-from report import machine, style
+from report import machine, tables
 
 HEAD = """# qdist: the report
 
@@ -57,7 +57,7 @@ def write(out, parts, quick):
     note = "\n*This is the quick one: few and small runs. Its figures are rough.*\n" if quick else ""
     heads = [re.search(r"^## (.*)$", text, re.M).group(1) for text in texts]
     contents = "\n".join(f"* [{head}](#{anchor(head)})" for head in heads)
-    where = style.table(["", "measured with"], machine.rows(), ["---", "---"])
+    where = tables.table(["", "measured with"], machine.rows(), ["---", "---"])
     text = "\n".join([HEAD + note, contents, "", *texts, "## Where this was measured\n", where])
     (out / "report.md").write_text(text)
     (out / "report.html").write_text(PAGE.format(body=inlined(out, text)))

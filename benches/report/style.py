@@ -8,8 +8,6 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from report.tables import table  # noqa: F401 (parts say style.table)
-
 # Okabe and Ito's colours, which colour-blind people tell apart; and a marker each, for print.
 COLORS = {
     "qdist": "#0072B2",

@@ -30,12 +30,18 @@ def knot():
 
 def l_shape():
     """Arms 0.8 long and 0.4 wide."""
-    section = [(1, 1), (1, 2), (0, 2), (0, 0), (2, 0), (2, 1)]
-    vertices = [[0.4 * x, 0.4 * y, z] for z in (0.0, 0.4) for x, y in section]
-    triangles = [t for k in range(1, 5) for t in ((0, k + 1, k), (6, 6 + k, 7 + k))]
-    for i in range(6):
-        j = (i + 1) % 6
-        triangles += [(i, j, 6 + j), (i, 6 + j, 6 + i)]
+    section = [(0.4 * x, 0.4 * y) for x, y in [(1, 1), (1, 2), (0, 2), (0, 0), (2, 0), (2, 1)]]
+    return prism(section, [(0, k, k + 1) for k in range(1, 5)], (0, 0.4))
+
+
+def prism(section, caps, ends):
+    """A polygon, counterclockwise, between two heights, with the triangles of its caps."""
+    count = len(section)
+    vertices = [[float(x), float(y), float(z)] for z in ends for x, y in section]
+    triangles = [t for a, b, c in caps for t in ((a, c, b), (count + a, count + b, count + c))]
+    for i in range(count):
+        j = (i + 1) % count
+        triangles += [(i, j, count + j), (i, count + j, count + i)]
     return vertices, triangles
 
 

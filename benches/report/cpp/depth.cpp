@@ -14,7 +14,6 @@
 // `answers` is run by a parent that notices, and is told which cases to leave out for whom (`--without SOLVER:TOLERANCE=CASE,CASE`).
 
 #include <algorithm>
-#include <cfenv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -26,10 +25,7 @@
 #include <string>
 #include <vector>
 
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
-
+#include "environment.hpp"
 #include "solvers.hpp"
 
 #if __has_include(<valgrind/callgrind.h>)
@@ -95,24 +91,6 @@ std::vector<std::unique_ptr<Query>> made(const Asked &asked, const std::vector<C
 
 std::string mode;
 
-// The floating-point environment that is asked for, while it lives. (Bodies are made before, numbers printed behind.)
-struct Mode {
-    Mode() {
-        if (mode == "up") std::fesetround(FE_UPWARD);
-        if (mode == "down") std::fesetround(FE_DOWNWARD);
-        if (mode == "zero") std::fesetround(FE_TOWARDZERO);
-#ifdef __SSE2__
-        if (mode == "ftz") _mm_setcsr(_mm_getcsr() | 0x8040);
-#endif
-    }
-    ~Mode() {
-        std::fesetround(FE_TONEAREST);
-#ifdef __SSE2__
-        _mm_setcsr(_mm_getcsr() & ~0x8040u);
-#endif
-    }
-};
-
 void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
     std::printf("case,solver,outcome,lower,upper,depth,nx,ny,nz\n");
     for (const Asked &asked : all) {
@@ -124,7 +102,7 @@ void answers(const std::vector<Case> &cases, const std::vector<Asked> &all) {
             try {
                 const auto alone = queries.empty() ? made(asked, c) : nullptr;
                 if (Query *query = queries.empty() ? alone.get() : queries[i].get()) {
-                    const Mode held;
+                    const Mode held(mode);
                     query->run(answer);
                 }
             } catch (const std::exception &) {

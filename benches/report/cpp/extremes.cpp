@@ -8,7 +8,6 @@
 #include <quadmath.h>
 
 #include <algorithm>
-#include <cfenv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,11 +16,8 @@
 #include <string>
 #include <vector>
 
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
-
 #include "../../../ffi-tests/dice.h"
+#include "environment.hpp"
 #include "qdist_grasp.h"
 
 namespace {
@@ -72,24 +68,6 @@ API(double, f64)
 API(float, f32)
 
 uint64_t memory[QDIST_WORKSPACE_WORDS_F64(6, 64, 2048)];
-
-// A floating-point environment, while it lives.
-struct Mode {
-    explicit Mode(const char *name) {
-        if (std::strcmp(name, "up") == 0) std::fesetround(FE_UPWARD);
-        if (std::strcmp(name, "down") == 0) std::fesetround(FE_DOWNWARD);
-        if (std::strcmp(name, "zero") == 0) std::fesetround(FE_TOWARDZERO);
-#ifdef __SSE2__
-        if (std::strcmp(name, "ftz") == 0) _mm_setcsr(_mm_getcsr() | 0x8040);
-#endif
-    }
-    ~Mode() {
-        std::fesetround(FE_TONEAREST);
-#ifdef __SSE2__
-        _mm_setcsr(_mm_getcsr() & ~0x8040u);
-#endif
-    }
-};
 constexpr const char *MODES[] = {"nearest", "ftz", "up", "down", "zero"};
 
 // ---------------------------------------------------------------------------------------------------------------- instances

@@ -1,16 +1,12 @@
 """Depth of two bodies in space: error against time and instructions, beside other libraries."""
 
-import shutil
 import statistics
-import subprocess
-import tempfile
 
-from report import build, cases, style
+from report import build, cases, style, tables
 from report.job import run
 from report.parts import scenes
+from report.solvers import DEFAULT, FAILED, answered, counted, error, parsed, timed, without
 
-# Of qdist: without the absolute tolerance that `compare` asks for.
-DEFAULT = {"qdist": "1e-6", "qdist f32": "1e-4"}
 TOLERANCES = {
     "nothing": ["0"],
     "qdist": ["1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12"],
@@ -28,8 +24,6 @@ TOLERANCES = {
 # What solvers take for their tolerance by themselves: the place of that on their curve.
 OWN = {**DEFAULT, "libccd EPA": "1e-4", "libccd MPR": "1e-4", "FCL": "1e-6", "FCL signed": "1e-6", "MuJoCo": "1e-6", "coal": "1e-6"}
 
-# An error of more than this share of the depth is a failure.
-FAILED = 0.01
 # Curves end here: a smaller error is none.
 LEAST = 1e-16
 
@@ -84,36 +78,11 @@ def measure(job):
         output = f"{family}.csv"
         job.step(family, [output], lambda: family_rows(job, family, output, columns, (program, parry, oracle), asked))
         rows += job.rows(output)
-    measured = Measured(job, program, oracle, here)
     for scene in (scenes.mixed, scenes.frames):
         output = f"{scene.__name__}.csv"
-        job.step(scene.__name__, [output], lambda: job.write_rows(output, scene(job, measured), columns))
+        job.step(scene.__name__, [output], lambda: job.write_rows(output, scene(job, program, oracle, here), columns))
         rows += job.rows(output)
     job.write_rows("depth.csv", rows, columns)
-
-
-class Measured:
-    """What scenes are measured with."""
-
-    def __init__(self, job, program, oracle, here):
-        self.job, self.program, self.oracle, self.here = job, program, oracle, here
-
-    def truth(self, file, *words):
-        return {row["case"]: row for row in parsed(run([self.oracle, file, *words]))}
-
-    def answers(self, file, asked, flags):
-        return answered(self.job, self.program, file, asked, flags)
-
-    def without(self, truth, said):
-        """Who hangs or aborts at a case is not asked about it again."""
-        lost = {solver: [case for case in truth if case not in answers] for solver, answers in said.items()}
-        return [word for solver, list_ in lost.items() if list_ for word in ("--without", f"{solver}={','.join(list_)}")]
-
-    def times(self, file, asked, without, flags):
-        return timed(self.job, self.program, file, asked, without, flags)
-
-    def counts(self, file, asked, without, flags):
-        return counted(self.job, self.program, file, asked, without, flags)
 
 
 def family_rows(job, family, output, columns, programs, asked):
@@ -124,20 +93,20 @@ def family_rows(job, family, output, columns, programs, asked):
         cases.write(file, cases.kept(job, oracle, count, draw))
         truth = {row["case"]: row for row in parsed(run([oracle, file, "1e-15"]))}
         single = {row["case"]: row for row in parsed(run([oracle, file, "float", "1e-15"]))}
-        answers = answered(job, program, file, asked)
+        answers = answered(program, file, asked)
         if parry:
-            answers.update(answered(job, parry, file, ["parry:0"]))
+            answers.update(answered(parry, file, ["parry:0"]))
         errors, lost = {}, {}
         for solver, said in answers.items():
             of = single if solver.startswith("qdist f32") else truth
             errors[solver] = [error(said.get(case), of[case]) for case in of]
             lost[solver] = [case for case, wrong in zip(of, errors[solver]) if wrong is None and solver != "nothing:0"]
-        without = [word for solver, list_ in lost.items() if list_ for word in ("--without", f"{solver}={','.join(list_)}")]
-        spent = timed(job, program, file, [s for s in asked if s in answers], without)
-        counts = counted(job, program, file, [s for s in asked if s in answers], without)
+        left_out = without(lost)
+        spent = timed(job, program, file, [s for s in asked if s in answers], left_out)
+        counts = counted(job, program, file, [s for s in asked if s in answers], left_out)
         if parry:
-            spent.update(timed(job, parry, file, ["parry:0"], without))
-            counts.update(counted(job, parry, file, ["parry:0"], without))
+            spent.update(timed(job, parry, file, ["parry:0"], left_out))
+            counts.update(counted(job, parry, file, ["parry:0"], left_out))
         for solver, wrong in errors.items():
             good = [e for e in wrong if e is not None]
             failed = sum(e is None or e > FAILED for e in wrong)
@@ -155,69 +124,6 @@ def family_rows(job, family, output, columns, programs, asked):
                 }
             )
     job.write_rows(output, rows, columns)
-
-
-def parsed(text):
-    lines = text.strip().split("\n")
-    head = lines[0].split(",")
-    return [dict(zip(head, line.split(","))) for line in lines[1:]]
-
-
-def error(said, truth):
-    """How far a depth is off, as a share of the true one; `None`: no answer."""
-    if said is None or said["depth"] in ("nan", "-nan", "inf", "-inf"):
-        return None
-    lower, upper = float(truth["lower"]), float(truth["upper"])
-    off = max(lower - float(said["depth"]), float(said["depth"]) - upper, 0.0)
-    return off / abs(upper)
-
-
-def answered(job, program, file, asked, flags=()):
-    """What each solver says of each case: in processes of their own, since some abort or hang."""
-    answers = {}
-    for solver in asked:
-        try:
-            out = subprocess.run([program, "answers", file, solver, *flags], capture_output=True, text=True, timeout=120).stdout
-        except subprocess.TimeoutExpired as late:
-            out = (late.stdout or b"").decode()
-        answers[solver] = {row["case"]: row for row in parsed(out) if len(row) == 9}
-        if all(row["outcome"] == "refused" for row in answers[solver].values()):
-            del answers[solver]  # It does not take such bodies.
-    return answers
-
-
-def timed(job, program, file, asked, without, flags=()):
-    rounds = 5 if job.quick or flags else 15
-    spent = {}
-    for row in parsed(run([program, "times", rounds, file, *asked, *mine(without, asked), *flags])):
-        spent.setdefault(row["solver"], []).append(float(row["ns"]))
-    return spent
-
-
-def mine(without, asked):
-    """Of the pairs --without SOLVER=CASES those that a program knows."""
-    pairs = zip(without[::2], without[1::2])
-    return [word for pair in pairs if pair[1].split("=")[0] in asked for word in pair]
-
-
-def counted(job, program, file, asked, without, flags=()):
-    """Instructions a query, by callgrind."""
-    if not shutil.which("valgrind"):
-        return {}
-    counts = {}
-    with tempfile.TemporaryDirectory(dir=job.built) as folder:
-        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/c"]
-        said = parsed(run([*command, program, "count", file, *asked, *mine(without, asked), *flags]))
-        for k, row in enumerate(said):
-            _, once, thrice = (total(f"{folder}/c.{3 * k + dump}") for dump in (1, 2, 3))
-            if int(row["cases"]):
-                counts[row["solver"]] = round((thrice - once) / (2 * int(row["cases"])))
-    return counts
-
-
-def total(dump):
-    with open(dump, errors="replace") as file:
-        return next(int(line.split()[1]) for line in file if line.startswith("totals:"))
 
 
 # ------------------------------------------------------------------------------------------------------------ the page
@@ -309,7 +215,7 @@ def beside(rows):
         names = f"{best['solver']}, {best['tolerance']}" if best else "none"
         lines.append([what, ours["instructions"] or "gap", f"{float(ours['median_error']):.0e}", ratio(mujoco), ratio(best), names])
     head = ["bodies", "qdist, instructions", "error", "to MuJoCo", "to the best that is right", "which is"]
-    text = style.table(head, lines, ["---", "---:", "---:", "---:", "---:", "---"])
+    text = tables.table(head, lines, ["---", "---:", "---:", "---:", "---:", "---"])
     text += f"\n*Right* is who answers every pair with a median error of at most {RIGHT['error']:.0e}. Ratios of instructions, qdist by default; below 1 qdist is the cheaper one.\n"
     where = "; ".join(lost) if lost else "nowhere in this table"
     return text + f"\n**Where we lose:** {where}. What no other column has is a bracket: each of qdist's answers says how far it may be off.\n"

@@ -3,12 +3,12 @@
 import csv
 import json
 import math
-import statistics
 from decimal import Decimal
 
 from report import build, cases, rust, tubes
 from report.job import run
-from report.parts.depth import parsed
+from report.solvers import parsed
+from report.verdicts import verdict
 
 SOLVERS = {"f64": "qdist", "f32": "qdist f32"}
 # An answer counts as failed where its bracket is wider than this share of its upper end, and of the size.
@@ -27,9 +27,9 @@ def sets_and_grasps(job):
 def judged(extreme, value, scalar, mode, answers):
     """A bracket is false where it contradicts what is known, or where its direction does not prove its upper end."""
     false = none = failed = 0
-    widths, outcomes = [], {}
+    widths, outcomes = [], []
     for row in answers:
-        outcomes[row["outcome"]] = outcomes.get(row["outcome"], 0) + 1
+        outcomes.append(row["outcome"].replace(" ", "-"))
         lower, upper, least, most, size, proved = (Decimal(row[key].replace("-nan", "nan")) for key in ("lower", "upper", "least", "most", "size", "proved"))
         if lower.is_nan() or upper.is_nan():
             none += 1
@@ -38,19 +38,7 @@ def judged(extreme, value, scalar, mode, answers):
         false += lower > most + rounding or (not least.is_nan() and upper < least - rounding) or proved.is_nan() or proved > upper + rounding
         failed += upper - lower > max(OFF * abs(upper), BLUR[scalar] * size)
         widths.append(float((upper - lower) / size))
-    return {
-        "extreme": extreme,
-        "value": value,
-        "solver": SOLVERS[scalar],
-        "mode": mode,
-        "pairs": len(answers),
-        "false": false,
-        "no_answer": none,
-        "failed": failed,
-        "median_width": f"{statistics.median(widths):.2g}" if widths else "",
-        "worst_width": f"{max(widths):.2g}" if widths else "",
-        "outcomes": " ".join(f"{name.replace(' ', '-')}:{count}" for name, count in sorted(outcomes.items())),
-    }
+    return verdict(extreme, value, SOLVERS[scalar], mode, false, none, failed, widths, outcomes)
 
 
 # ------------------------------------------------------------------------------------------------------------- meshes
@@ -139,10 +127,4 @@ def channel(gap):
     """A block with a slot from the top down."""
     s = gap / 2
     section = [(-6, 0), (6, 0), (6, 10), (s, 10), (s, 1), (-s, 1), (-s, 10), (-6, 10)]
-    caps = [(0, 1, 4), (0, 4, 5), (1, 2, 3), (1, 3, 4), (0, 5, 6), (0, 6, 7)]
-    vertices = [[float(x), float(y), z] for z in (-5.0, 5.0) for x, y in section]
-    triangles = [t for a, b, c in caps for t in ((a, c, b), (8 + a, 8 + b, 8 + c))]
-    for i in range(8):
-        j = (i + 1) % 8
-        triangles += [(i, j, 8 + j), (i, 8 + j, 8 + i)]
-    return vertices, triangles
+    return tubes.prism(section, [(0, 1, 4), (0, 4, 5), (1, 2, 3), (1, 3, 4), (0, 5, 6), (0, 6, 7)], (-5, 5))

@@ -33,7 +33,7 @@ def tell(job):
             line += [tables.duration(float(mine["median_ns"])), tables.duration(float(other["median_ns"])), f"{float(other['median_ns']) / float(mine['median_ns']):.1f}"]
         lines.append(line)
     head = ["contacts", "L1: qdist", "Clarabel", "times", "L-infinity: qdist", "Clarabel", "times"]
-    text.append("To an error below a millionth:\n\n" + style.table(head, lines, ["---:"] * 7))
+    text.append("To an error below a millionth:\n\n" + tables.table(head, lines, ["---:"] * 7))
     failed = {solver: sum(int(row["failed"]) for row in rows if row["solver"] == solver) for solver in SOLVERS}
     text.append(f"\nWithout an answer, or off by the whole size: qdist {failed['qdist']}, Clarabel {failed['Clarabel']}. {lost(rows)}\n")
     text.append("Joint torque limits that bind are not in this comparison; `tests/grasp/fingers.rs` asks Clarabel about them, for truth and not for time.\n")

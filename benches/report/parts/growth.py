@@ -3,12 +3,11 @@
 import csv
 import io
 import math
-import shutil
 import time
 
-from report import build, rust, style, tubes
+from report import build, rust, style, tables, tubes
 from report.job import run
-from report.parts.depth import total
+from report.solvers import dumped
 
 COLUMNS = ["series", "size", "instructions", "ns", "calls", "vertices", "facets", "bytes"]
 # What is fitted: its column, its name, and how it is drawn.
@@ -68,18 +67,10 @@ def triangles(job):
 
 
 def counted(job, program, largest):
-    """Instructions a query, by callgrind."""
-    if not shutil.which("valgrind"):
-        return {}
-    folder = job.built / "growth-counts"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    said = csv.DictReader(io.StringIO(run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/c", program, "count", largest])))
-    counts = {}
-    for k, row in enumerate(said):
-        _, once, thrice = (total(folder / f"c.{3 * k + dump}") for dump in (1, 2, 3))
-        counts[row["series"], row["size"]] = round((thrice - once) / (2 * int(row["queries"])))
-    return counts
+    """Instructions a query."""
+    text, two_rounds = dumped(job, [program, "count", largest])
+    rows = csv.DictReader(io.StringIO(text))
+    return {(row["series"], row["size"]): round(spent / (2 * int(row["queries"]))) for row, spent in zip(rows, two_rounds)}
 
 
 # ------------------------------------------------------------------------------------------------------------ the page
@@ -101,11 +92,11 @@ def tell(job):
     text = [INTRODUCTION, style.shown(job, "growth", "Work and memory against size, a panel a series", "Marks are measured, thin lines the fitted powers. A flat line costs nothing more; the steeper, the worse. Points that leave their line are growth that is no power.")]
     cell = lambda fit: "gap" if fit is None else f"{fit[0]:.2f}".replace("-0.00", "0.00")
     lines = [[name, *(cell(fits[name, what]) for what in MEASURES)] for name in names]
-    text.append(style.table(["exponent over", *(label for label, _, _ in MEASURES.values())], lines))
+    text.append(tables.table(["exponent over", *(label for label, _, _ in MEASURES.values())], lines))
     text.append("\nThe largest of each series:\n")
     ends = [max((row for row in rows if row["series"] == name), key=lambda row: row["size"]) for name in names]
     number = lambda x: "gap" if math.isnan(x) else f"{x:,.0f}"
-    text.append(style.table(["series", "size", *(label for label, _, _ in MEASURES.values())], [[row["series"], f"{row['size']:.3g}", *(number(row[what]) for what in MEASURES)] for row in ends]))
+    text.append(tables.table(["series", "size", *(label for label, _, _ in MEASURES.values())], [[row["series"], f"{row['size']:.3g}", *(number(row[what]) for what in MEASURES)] for row in ends]))
     text.append(lost(names, fits))
     text.append("Run it: `./x report PART=growth OUT=dir`.\n")
     return "\n".join(text)

@@ -5,7 +5,7 @@ import os
 import re
 import statistics
 
-from report import build, grasps, rust, style
+from report import build, grasps, rust, style, tables
 from report.cases import Dice
 from report.job import ROOT, run
 from report.tables import duration
@@ -209,7 +209,7 @@ def dimensions(rows):
             line += [duration(float(row["median_ns"])), row["iterations"]] if row else ["gap", "gap"]
         lines.append(line)
     head = ["dimension", "ellipsoid", "iterations", "box", "iterations"]
-    return "What a dimension costs, to an absolute 1e-4: A with semi axes evenly from 1 to 2, Q the unit ball.\n\n" + style.table(head, lines, ["---:"] * 5)
+    return "What a dimension costs, to an absolute 1e-4: A with semi axes evenly from 1 to 2, Q the unit ball.\n\n" + tables.table(head, lines, ["---:"] * 5)
 
 
 # ------------------------------------------------------------------------------------------------------------ one run
@@ -329,7 +329,7 @@ def hull_table(rows):
     again, failed = (sum(row["outcome"] == outcome for row in asked) for outcome in ("QJ", "failed"))
     head = ["contacts", *(f"{sides} edges" for sides in SIDES), "qdist, 1 %", "qdist, 0.1 %"]
     text = "How much of d pyramids lose, and in what time (medians of random grasps); in the last columns the time of a bracket that is so narrow.\n\n"
-    text += style.table(head, lines, ["---"] + ["---:"] * 7)
+    text += tables.table(head, lines, ["---"] + ["---:"] * 7)
     return text + f"\nOf {len(asked)} hulls Qhull could not make {again + failed} of the points as they are; with the points moved a little (`QJ`, whose time is told), {again} of these came out. Times of Qhull are of its hull alone, processor time; a soft contact has two edges more, which turn.\n"
 
 
@@ -358,7 +358,7 @@ def questions(job):
             line.append(duration(1e6 * float(row["median_ms"])) if row else "gap")
         lines.append(line)
     text = f"**What a planner and a controller ask**, of random closed grasps of soft fingers, L-infinity (medians of {rows[0]['grasps']} grasps):\n\n"
-    return text + style.table(["question", *(f"{count} contacts" for count in contacts)], lines)
+    return text + tables.table(["question", *(f"{count} contacts" for count in contacts)], lines)
 
 
 def lost(job, rows):

@@ -3,9 +3,9 @@
 import re
 import statistics
 
-from report import build, cases, rust, style
+from report import build, cases, rust, style, tables
 from report.job import ROOT, run
-from report.parts.depth import DEFAULT, counted
+from report.solvers import DEFAULT, counted
 
 # Compilers expect these everywhere; they are not the library's.
 MEMORY = [f"--defsym={name}=0" for name in ("memcpy", "memset", "memmove", "memcmp", "bcmp")]
@@ -133,11 +133,11 @@ def tell(job):
     work_rows = [row for row in job.rows("work.csv")]
     names = {"qdist": "f64", "qdist f32": "f32"}
     lines = [[row["what"], names[row["solver"]], row["instructions"] or "gap", f"{float(row['calls']):.0f}", f"{float(row['vertices']):.0f}", f"{float(row['facets']):.0f}"] for row in work_rows]
-    text.append(style.table(["bodies", "scalar", "instructions", "support calls", "vertices", "facets"], lines, ["---", "---", "---:", "---:", "---:", "---:"]))
+    text.append(tables.table(["bodies", "scalar", "instructions", "support calls", "vertices", "facets"], lines, ["---", "---", "---:", "---:", "---:", "---:"]))
     text.append("\n**Stack** of a query, and the **memory** that a caller gives a solver, in bytes:\n")
-    text.append(style.table(["query", "bytes"], [list(row.values()) for row in job.rows("stack.csv")]))
+    text.append(tables.table(["query", "bytes"], [list(row.values()) for row in job.rows("stack.csv")]))
     rows = job.rows("memory.csv")
-    text.append(style.table(list(rows[0]), [list(row.values()) for row in rows], ["---:"] * 5))
+    text.append(tables.table(list(rows[0]), [list(row.values()) for row in rows], ["---:"] * 5))
     text.append("\nRun it: `./x report PART=leave-out OUT=dir`; `./x purity` proves that a program of boxes contains no other shape, and none in `float` anything in `double`.\n")
     return "\n".join(text)
 

@@ -114,7 +114,7 @@ def summary(rows, groups):
                 line.append(f"{found[2]}/{found[3]}, {tables.duration(1e6 * found[1])}" if found else "gap")
             lines.append(line)
     head = ["bodies, metric", *EFFORTS, *VARIANTS.values()]
-    return "Within 1 % of the best value known, and the median time:\n\n" + style.table(head, lines)
+    return "Within 1 % of the best value known, and the median time:\n\n" + tables.table(head, lines)
 
 
 def deepest(job):
@@ -130,7 +130,7 @@ def deepest(job):
                 time = tables.duration(statistics.median(float(row["ns"]) for row in mine))
                 lines.append([f"{library}, {group}", f"{statistics.median(shares):.2g}", f"{min(shares):.2g} to {max(shares):.2g}", time])
     head = ["library, bodies", "their depth over DISP, median", "least to most", "median time"]
-    return "\nWhat people use instead: FCL and coal tell the deepest pair of triangles that meet. That is no depth of the bodies, and nothing bounds it; here it is as a share of the least motion (DISP) that frees them.\n\n" + style.table(head, lines)
+    return "\nWhat people use instead: FCL and coal tell the deepest pair of triangles that meet. That is no depth of the bodies, and nothing bounds it; here it is as a share of the least motion (DISP) that frees them.\n\n" + tables.table(head, lines)
 
 
 def passages(job):
@@ -148,4 +148,4 @@ def passages(job):
     default = [float(row["upper"]) / float(row["planted"]) for row in rows if row["effort"] == "default"]
     off = sum(ratio > 1 + WITHIN for ratio in default)
     text = f"\n**Where we lose**: narrow passages. Keys, sockets, linked rings and springs, each moved out of a free pose that is known: `upper` over that pose's distance (below 1: something nearer was found). With default effort {off} of {len(default)} are off by more than 1 %, the worst {max(default):.3g} times.\n\n"
-    return text + style.table(["query", "planted DISP", *EFFORTS], lines)
+    return text + tables.table(["query", "planted DISP", *EFFORTS], lines)

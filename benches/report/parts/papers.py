@@ -6,7 +6,7 @@ import math
 import statistics
 import xml.etree.ElementTree
 
-from report import rust, style, tubes
+from report import rust, style, tables, tubes
 from report.job import run
 from report.parts.high import DQ, duration, finest, split
 
@@ -118,7 +118,7 @@ def zheng(rows):
             if ours and scan and ours["eps"] == scan["eps"]:
                 faster.append((float(scan["median_ns"]) / float(ours["median_ns"]), f"{name}, {which}"))
     head = ["row", "Q", "paper: d", "K", "time", "ours: d", "width", "K", "time", "bookkeeping here: K", "time"]
-    text = style.table(head, lines, ["---", "---"] + ["---:"] * 9)
+    text = tables.table(head, lines, ["---", "---"] + ["---:"] * 9)
     text += f"\n{WHY}\n"
     if faster:
         text += f"\nOn the same machine and to the same tolerance the bookkeeping takes {min(faster)[0]:.1f} ({min(faster)[1]}) to {max(faster)[0]:.0f} ({max(faster)[1]}) times as long as qdist; a gap is a case that it did not finish at 1e-4.\n"
@@ -231,7 +231,7 @@ def zhang(job):
             line += [f"{printed} ms", duration(statistics.mean(times)) if times else "gap", f"{100 * statistics.median(narrow):.0f} %" if narrow else "gap"]
         lines.append(line)
     head = ["A, triangles", "B, triangles", "DISP, paper", "ours", "width", "sigma, paper", "ours", "width"]
-    text = style.table(head, lines, ["---", "---"] + ["---:"] * 6)
+    text = tables.table(head, lines, ["---", "---"] + ["---:"] * 6)
     return text + f"\n{MESHES}\n"
 
 

@@ -1,19 +1,19 @@
-"""Families of the part depth that are scenes: many bodies of all kinds, most of them apart; and bodies that turn from frame to frame."""
+"""Families of the part depth that are scenes: many bodies of all kinds, half of the pairs apart; and bodies that turn from frame to frame."""
 
 import math
 import statistics
 
 from report import cases, tables
+from report.job import run
+from report.solvers import FAILED, LOST, answered, counted, error, parsed, timed, without
 
 KINDS = ["sphere", "box", "ellipsoid", "cylinder", "capsule", "cone", "hull-8", "hull-50"]
 DEFAULTS = ["qdist:1e-6", "qdist f32:1e-4", "libccd EPA:0", "libccd MPR:0", "FCL:0", "FCL signed:0", "Bullet:0", "MuJoCo:0", "coal:0"]
 FRAMES, DEGREES = 64, 0.5
 TURNING = {"box-box": ("box", "box"), "cylinder-box": ("cylinder", "box"), "hull-50": ("hull-50", "hull-50"), "hull-500": ("hull-500", "hull-500")}
-# Of a depth more than this share off is a failure, as in the other families.
-FAILED = 0.01
 
 
-def mixed(job, measured):
+def mixed(job, program, oracle, here):
     """Random pairs as a broad phase leaves them: half of them overlap, by up to 30 % of their reach, half are apart by as much."""
     dice = cases.Dice("mixed scene")
     texts = []
@@ -23,12 +23,12 @@ def mixed(job, measured):
     file, few = job.path("mixed.cases"), job.path("mixed-counted.cases")
     cases.write(file, texts)
     cases.write(few, texts[: 50 if job.quick else 1000])
-    truth = measured.truth(file, "1e-9", "400")
-    yield from rows(measured, "mixed scene", "depth", file, few, truth, [], judge_depth)
-    yield from rows(measured, "mixed scene", "yes or no", file, few, truth, ["--overlap"], judge_overlap)
+    truth = {row["case"]: row for row in parsed(run([oracle, file, "1e-9", "400"]))}
+    yield from rows(job, program, here, "mixed scene", "depth", file, few, truth, [], judge_depth)
+    yield from rows(job, program, here, "mixed scene", "yes or no", file, few, truth, ["--overlap"], judge_overlap)
 
 
-def frames(job, measured):
+def frames(job, program, oracle, here):
     """One body turns by half a degree a frame in front of the other; qdist asked anew, and asked with the last normal."""
     for name, kinds in TURNING.items():
         if job.quick and name.startswith("hull"):
@@ -44,19 +44,19 @@ def frames(job, measured):
             texts.append(cases.case(f"{name}-{k}", a, b))
         file = job.path("frames.cases")
         cases.write(file, texts)
-        truth = measured.truth(file, "1e-12", "2000")
-        yield from rows(measured, "frames", f"{name}, anew", file, file, truth, [], judge_depth)
-        yield from rows(measured, "frames", f"{name}, from the last", file, file, truth, ["--guess"], judge_depth)
+        truth = {row["case"]: row for row in parsed(run([oracle, file, "1e-12", "2000"]))}
+        yield from rows(job, program, here, "frames", f"{name}, anew", file, file, truth, [], judge_depth)
+        yield from rows(job, program, here, "frames", f"{name}, from the last", file, file, truth, ["--guess"], judge_depth)
 
 
-def rows(measured, family, name, file, counted, truth, flags, judge):
+def rows(job, program, here, family, name, file, few, truth, flags, judge):
     """A row a solver, at its own tolerance. Who has no such question is left out."""
-    asked = [word for word in DEFAULTS if word.rsplit(":", 1)[0] in measured.here]
+    asked = [word for word in DEFAULTS if word.rsplit(":", 1)[0] in here]
     if "--guess" in flags:
         asked = [word for word in asked if word.startswith("qdist")]
-    said = measured.answers(file, asked, flags)
-    without = measured.without(truth, said)
-    spent, counts = measured.times(file, list(said), without, flags), measured.counts(counted, list(said), without, flags)
+    said = answered(program, file, asked, flags)
+    left_out = without({solver: [case for case in truth if case not in answers] for solver, answers in said.items()})
+    spent, counts = timed(job, program, file, list(said), left_out, flags), counted(job, program, few, list(said), left_out, flags)
     for solver, answers in said.items():
         # (Cases of shapes that it does not have do not count.)
         asked_of = [case for case in truth if answers.get(case, {}).get("outcome") != "refused"]
@@ -74,26 +74,27 @@ def rows(measured, family, name, file, counted, truth, flags, judge):
         }
 
 
-def number(said):
-    return None if said is None or "nan" in said["depth"] or "inf" in said["depth"] else float(said["depth"])
+def known(said):
+    return said is not None and said["outcome"] not in LOST
+
+
+def overlaps(said):
+    """As its depth tells: apart is below 0, or no number."""
+    return 0 <= float(said["depth"]) < math.inf
 
 
 def judge_depth(said, truth):
     """The error, as a share of the truth; `None`: no answer where they overlap. That they are apart is enough where they are."""
-    lower, upper = float(truth["lower"]), float(truth["upper"])
-    depth = number(said)
-    if upper < 0:
-        known = said is not None and said["outcome"] not in ("exception", "nan", "fail")
-        return (None if not known else 0.0) if depth is None or depth < 0 else 1.0
-    return None if depth is None else max(lower - depth, depth - upper, 0.0) / abs(upper)
+    if float(truth["upper"]) < 0:
+        return (1.0 if overlaps(said) else 0.0) if known(said) else None
+    return error(said, truth)
 
 
 def judge_overlap(said, truth):
     """Right or wrong; `None`: no answer."""
-    if said is None or said["outcome"] in ("exception", "nan", "fail"):
+    if not known(said):
         return None
-    depth = number(said)
-    return 0.0 if (depth is not None and depth >= 0) == (float(truth["upper"]) > 0) else 1.0
+    return 0.0 if overlaps(said) == (float(truth["upper"]) > 0) else 1.0
 
 
 # ------------------------------------------------------------------------------------------------------------ the page

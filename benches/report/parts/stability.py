@@ -1,14 +1,13 @@
 """Stability: extreme bodies, one row an extreme, against the oracle."""
 
 import math
-import statistics
-import subprocess
 from decimal import Decimal
 
-from report import build, cases, style
+from report import build, cases, solvers, style
 from report.job import run
 from report.parts import extremes
-from report.parts.depth import DEFAULT, parsed
+from report.solvers import DEFAULT, LOST, parsed
+from report.verdicts import verdict
 
 # Steps that are enough for the oracle: what it leaves open is its own bracket, and only what contradicts that is false.
 ORACLE = ["1e-13", "300"]
@@ -22,8 +21,6 @@ RESTARTS = 5
 AS_THEY_ARE = ("overlap, of the size", "touching, to the last bit")
 # Outcomes of qdist with a wider bracket than asked for.
 OPEN = ("precision", "iterations", "capacity", "bounded", "budget", "degenerate")
-# Outcomes that are none.
-LOST = ("none", "exception", "nan", "fail")
 # The largest and smallest sizes that single precision is asked for.
 SINGLE = (1e-18, 1e18)
 
@@ -154,7 +151,7 @@ def rough(dice, off):
 def measure(job):
     program, oracle = build.build(job), build.build_oracle(job)
     here = set(run([program, "solvers"]).split("\n"))
-    solvers = ["qdist", "qdist f32", *(name for name in PEERS if name in here)]
+    asked = ["qdist", "qdist f32", *(name for name in PEERS if name in here)]
     columns = ["extreme", "value", "solver", "mode", "pairs", "false", "no_answer", "failed", "median_width", "worst_width", "outcomes"]
     all_rows = []
     by_name = {}
@@ -162,7 +159,7 @@ def measure(job):
         by_name.setdefault(extreme, []).append((value, make, size))
     for extreme, values in by_name.items():
         output = "".join(c if c.isalnum() else "-" for c in extreme) + ".csv"
-        work = lambda: job.write_rows(output, measured(job, extreme, values, solvers, (program, oracle)), columns)
+        work = lambda: job.write_rows(output, measured(job, extreme, values, asked, (program, oracle)), columns)
         job.step(extreme, [output], work)
         all_rows += job.rows(output)
     for name, more in (("sets-and-grasps", extremes.sets_and_grasps), ("meshes", extremes.meshes)):
@@ -174,7 +171,7 @@ def measure(job):
         raise RuntimeError(f"false brackets, or queries without an answer: {bad}")
 
 
-def measured(job, extreme, values, solvers, programs):
+def measured(job, extreme, values, asked, programs):
     program, oracle = programs
     for value, make, size in values:
         dice = cases.Dice(f"{extreme} {value}")
@@ -183,7 +180,7 @@ def measured(job, extreme, values, solvers, programs):
         texts = [draw(k) for k in range(count)] if extreme in AS_THEY_ARE else cases.kept(job, oracle, count, draw)
         cases.write(file, texts)
         truth = {"qdist f32": parsed(run([oracle, file, "float", *ORACLE])), "": parsed(run([oracle, file, *ORACLE]))}
-        for solver in solvers:
+        for solver in asked:
             if solver == "qdist f32" and not SINGLE[0] < size < SINGLE[1]:
                 continue
             of = truth.get(solver, truth[""])
@@ -196,17 +193,13 @@ def measured(job, extreme, values, solvers, programs):
 def answered(job, program, texts, solver, mode):
     """What a solver says of each pair, in processes of their own."""
     file, said, at = job.path("asked.cases"), {}, 0
+    flags, seconds = ["--mode", mode] if mode else [], QUICKLY if job.quick else SECONDS
     for _ in range(RESTARTS + 1):
         cases.write(file, texts[at:])
-        command = [program, "answers", file, *(["--mode", mode] if mode else []), f"{solver}:{DEFAULT.get(solver, 0)}"]
-        try:
-            out = subprocess.run(command, capture_output=True, text=True, timeout=QUICKLY if job.quick else SECONDS).stdout
-        except subprocess.TimeoutExpired as late:
-            out = (late.stdout or b"").decode()
-        rows_ = [row for row in parsed(out) if len(row) == 9] if out else []
+        rows_ = solvers.said(program, file, f"{solver}:{DEFAULT.get(solver, 0)}", flags, seconds)
         said.update((row["case"], row) for row in rows_)
         at += len(rows_) + 1  # (That one is lost.)
-        if at > len(texts):
+        if at >= len(texts):
             return said
     return said | {text.split()[1]: {"outcome": "refused"} for text in texts[at:]}
 
@@ -216,12 +209,12 @@ def judged(extreme, value, solver, mode, size, truth, said):
     depth, or a millionth of the size where that is more (single precision: 2e-5)? That they do not overlap is enough where they do not. Pairs of shapes that a solver does
     not have do not count."""
     false = none = failed = 0
-    widths, outcomes = [], {}
+    widths, outcomes = [], []
     blur = Decimal(size) * Decimal("2e-5" if solver.endswith("f32") else "1e-6")
     truth = [of for of in truth if said.get(of["case"], {}).get("outcome") != "refused"]
     for of in truth:
         row = said.get(of["case"], {"outcome": "none", "depth": "nan", "lower": "nan", "upper": "nan"})
-        outcomes[row["outcome"]] = outcomes.get(row["outcome"], 0) + 1
+        outcomes.append(row["outcome"])
         numbers = {key: Decimal(row[key].replace("-nan", "nan")) for key in ("lower", "upper", "depth")}
         least, most = Decimal(of["lower"]), Decimal(of["upper"])
         slack = max(abs(most) * Decimal("0.01"), blur)
@@ -232,20 +225,8 @@ def judged(extreme, value, solver, mode, size, truth, said):
         if not numbers["lower"].is_nan() and not numbers["upper"].is_nan():
             false += numbers["lower"] > most or numbers["upper"] < least
             widths.append(float((numbers["upper"] - numbers["lower"]) / Decimal(size)))
-    return {
-        "extreme": extreme,
-        "value": value,
-        "solver": solver,
-        "mode": mode or "nearest",
-        "pairs": len(truth),
-        "false": false if solver.startswith("qdist") else "",
-        "no_answer": none,
-        "failed": failed,
-        "median_width": f"{statistics.median(widths):.2g}" if widths else "",
-        "worst_width": f"{max(widths):.2g}" if widths else "",
-        "outcomes": " ".join(f"{name}:{count}" for name, count in sorted(outcomes.items())),
-    }
-
+    false = false if solver.startswith("qdist") else ""
+    return verdict(extreme, value, solver, mode or "nearest", false, none, failed, widths, outcomes)
 
 
 # ------------------------------------------------------------------------------------------------------------ the page

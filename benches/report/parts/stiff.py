@@ -3,7 +3,7 @@
 import math
 import subprocess
 
-from report import build, style
+from report import build, style, tables
 
 RATES = [1000, 10000]
 # Solvers by their own settings; of qdist those that a loop would have.
@@ -181,7 +181,7 @@ def summary(rows):
             cells.append(f"{100 * silent / touching:.2g} %" if silent else "none")
         lines.append(cells)
     heads = [f"{what}, {hz // 1000} kHz" for hz in RATES for what in ("energy off", "depth jumps", "normal jumps, degrees", "without an answer")]
-    text = style.table(["the worst of all scenes", *heads], lines)
+    text = tables.table(["the worst of all scenes", *heads], lines)
     ended = [f"{row['solver']} {row['ended']} ({row['scene']}, {int(row['hz']) // 1000} kHz)" for row in rows if row["ended"]]
     if ended:
         text += f"\nNot finished: {'; '.join(ended)}.\n"

@@ -39,7 +39,6 @@ impl<const N: usize> AnswersUnit<N> for qdist_ellipsoid_unit_f64 {
     }
     #[inline(always)]
     fn trusted(&self) -> Check<Self::Set<'_>> {
-        let axes = first(&self.semi_axes, N)?;
         // A struct that has become one of another dimension is none of this.
         if self.dimension as usize != N {
             return Err(QDIST_ERROR_DIMENSION);
@@ -48,7 +47,7 @@ impl<const N: usize> AnswersUnit<N> for qdist_ellipsoid_unit_f64 {
             None => SMatrix::identity(),
             Some(list) => SMatrix::from_fn(|i, j| list.get(N * i + j).copied().unwrap_or(f64::NAN)),
         };
-        Ok(UnitEllipsoid::trusted(Vector::from_iterator(axes.iter().copied()), rotation))
+        Ok(UnitEllipsoid::trusted(leading(&self.semi_axes), rotation))
     }
     fn mirrored(&self, signs: u8) -> bool {
         self.is_mirrored(signs)
