@@ -140,7 +140,7 @@ pub mod internal {
     pub use crate::grasp::{forces::check as check_forces, linearized::opposed, numbers::usable};
     pub use crate::math::load::{alone, one_by_one};
     pub use crate::math::norm;
-    pub use crate::solver::depth::unbounded;
+    pub use crate::solver::depth::{by_routes as depth_by_routes, unbounded};
     pub use crate::solver::warm::REMEMBERED;
     pub use crate::solver::workspace::{initialize, open};
     pub use crate::support::hull::List;

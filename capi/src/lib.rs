@@ -30,7 +30,10 @@
 #![deny(clippy::undocumented_unsafe_blocks)]
 
 include!(concat!(env!("OUT_DIR"), "/f32.rs"));
+#[cfg(chosen)] // (Some functions only: `build.rs`.)
+include!(concat!(env!("OUT_DIR"), "/f64.rs"));
 mod callback;
+#[cfg(not(chosen))]
 pub mod f64;
 #[cfg(feature = "grasp")]
 pub mod grasp;

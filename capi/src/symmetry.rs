@@ -26,8 +26,8 @@ pub type qdist_unbounded = Option<
     ) -> qdist_status,
 >;
 
-/// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
-pub type qdist_turning = Option<unsafe extern "C" fn()>;
+/// How depth is found with a body in space: what the functions that make bodies put there. The code of a plan is linked where one of them names it.
+pub type qdist_route = Option<unsafe extern "C" fn()>;
 
 /// The mirror function of sets that are symmetric in every coordinate.
 pub(super) unsafe extern "C" fn mirrored_always(_user: *mut c_void, _signs: u32) -> i32 {

@@ -22,9 +22,9 @@
 
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
-pub use crate::solver::depth::arcs::Turning;
 pub use crate::solver::depth::half_space::HalfSpace;
 use crate::solver::depth::half_space::Unbounded;
+pub use crate::solver::depth::route::Route;
 
 mod combine;
 pub(crate) mod failure;
@@ -124,10 +124,10 @@ pub trait Support<T: Real, const N: usize> {
         None
     }
 
-    /// For a set whose [`symmetry`](Support::symmetry) is `Axis`: `Some(Turning::new())` has arcs of minimisers around its axis searched for (a corner of
-    /// the other body on the axis, a second axis nearby), which else need thousands of facets. Programs without such sets are spared that code.
-    /// A wrapper that changes the set must not forward this.
-    fn turning(&self) -> Option<Turning<T>> {
+    /// For a set in R^3: how its depth in another one is found. `None`: by expansion, and in a plane with a body that turns about the same axis. A set whose
+    /// [`symmetry`](Support::symmetry) is `Axis` may say [`Some(Route::arcs())`](Route::arcs); programs without such sets are spared that code. A wrapper that
+    /// changes the set must not forward this.
+    fn route(&self) -> Option<Route<T>> {
         None
     }
 

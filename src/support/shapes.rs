@@ -8,7 +8,7 @@
 use core::fmt;
 
 use super::range::{check_numbers, check_sizes, floor, length, rescaled, signed};
-use super::{Failure, Support, Symmetry, Turning};
+use super::{Failure, Route, Support, Symmetry};
 use crate::math::load::one_by_one;
 use crate::math::{TwoWords, Vector, largest, magnitude, unit};
 use crate::scalar::Real;
@@ -304,9 +304,12 @@ impl<T: Real, const N: usize> Support<T, N> for Ellipsoid<T, N> {
             _ => Symmetry::None,
         }
     }
-    fn turning(&self) -> Option<Turning<T>> {
+    fn route(&self) -> Option<Route<T>> {
+        if const { N != 3 } {
+            return None; // (No code of bodies for what is none.)
+        }
         let turns = Support::<T, N>::symmetry(self) == Symmetry::Axis;
-        Some(if turns { Turning::new() } else { Turning::ellipsoid() })
+        Some(if turns { Route::arcs() } else { Route::ellipsoid() })
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true

@@ -2,7 +2,7 @@
 
 use super::range::{check_sizes, in_range, length, rescaled, signed};
 use super::shapes::ShapeError;
-use super::{Failure, Support, Symmetry, Turning};
+use super::{Failure, Route, Support, Symmetry};
 use crate::math::load::one_by_one;
 use crate::math::{TwoWords, Vector, unit};
 use crate::scalar::Real;
@@ -54,8 +54,8 @@ impl<T: Real> Support<T, 3> for Cylinder<T> {
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
     }
-    fn turning(&self) -> Option<Turning<T>> {
-        Some(Turning::new())
+    fn route(&self) -> Option<Route<T>> {
+        Some(Route::arcs())
     }
     fn mirrored(&self, _signs: u8) -> bool {
         true
@@ -206,8 +206,8 @@ impl<T: Real> Support<T, 3> for Cone<T> {
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
     }
-    fn turning(&self) -> Option<Turning<T>> {
-        Some(Turning::new())
+    fn route(&self) -> Option<Route<T>> {
+        Some(Route::arcs())
     }
     fn mirrored(&self, signs: u8) -> bool {
         signs & 4 == 0

@@ -3,7 +3,7 @@
 
 use super::*;
 use qdist::internal;
-use qdist::support::{HalfSpace, Join, Rigid, Symmetry, Turning};
+use qdist::support::{HalfSpace, Join, Rigid, Route, Symmetry};
 
 /// What a body states about its set, beside what the set states itself.
 #[derive(Clone, Copy)]
@@ -14,7 +14,7 @@ pub(super) struct Stated<const N: usize> {
     pub extents: [f64; N],
     pub errors: [f64; N],
     pub symmetry: u32,
-    pub turning: qdist_turning,
+    pub route: qdist_route,
     pub precise: qdist_precise_f64,
     pub unbounded: qdist_unbounded,
 }
@@ -27,7 +27,7 @@ impl<const N: usize> Stated<N> {
         extents: [0.0; N],
         errors: [0.0; N],
         symmetry: QDIST_SYMMETRY_NONE,
-        turning: None,
+        route: None,
         precise: None,
         unbounded: None,
     };
@@ -43,7 +43,7 @@ impl<const N: usize> Stated<N> {
             extents: set.extents().into(),
             errors: set.errors().into(),
             symmetry: from_symmetry(set.symmetry()),
-            turning: set.turning().map(Turning::into_raw),
+            route: Some(set.route().unwrap_or_else(Route::expansion).into_raw()),
             ..Self::NOTHING
         }
     }
@@ -76,7 +76,8 @@ pub(super) trait Placed<const N: usize>: Copy + Gaps + 'static {
         body.checked()?;
         let set = set.get()?;
         set.check(N)?;
-        body.put(Self::new(*set, Stated::NOTHING))
+        // (Whether it turns is said afterwards.)
+        body.put(Self::new(*set, Stated { route: Some(Route::<f64>::axis().into_raw()), ..Stated::NOTHING }))
     }
 }
 
@@ -181,9 +182,9 @@ impl<B: Placed<N>, const N: usize> Support<f64, N> for Checked<'_, B> {
             _ => Symmetry::None,
         }
     }
-    fn turning(&self) -> Option<Turning<f64>> {
-        // SAFETY: what the header asks of the caller: NULL, or what a body function of this scalar type has written.
-        self.0.stated().turning.map(|turning| unsafe { Turning::from_raw(turning) })
+    fn route(&self) -> Option<Route<f64>> {
+        // SAFETY: what the header asks of the caller: what a body function of this scalar type has written, or NULL.
+        self.0.stated().route.map(|route| unsafe { Route::from_raw(route) })
     }
     fn contains_origin(&self) -> bool {
         self.0.set().knows_origin(N)
@@ -232,7 +233,8 @@ pub(super) trait Joined<const N: usize>: 'static {
             ..qdist_set_f64::stated_by(&set)
         };
         let (symmetry, rolling_radius) = (from_symmetry(set.symmetry()), set.rolling_radius());
-        let made = Self::Body::new(made, Stated { symmetry, rolling_radius, ..Stated::NOTHING });
+        let route = Some(Route::<f64>::axis().into_raw());
+        let made = Self::Body::new(made, Stated { symmetry, rolling_radius, route, ..Stated::NOTHING });
         // A measured extent may be infinite.
         Checked::new(&made)?;
         body.put(made)
@@ -348,7 +350,7 @@ unsafe extern "C" fn answer<H: Half<N>, const N: usize>(
 
 // ------------------------------------------------------------------------------------------------------------- query
 
-/// Depth of two bodies; `query` asks the solver.
+/// Depth of two bodies; `query` asks the solver. `None`: a body has no route.
 #[inline(always)]
 pub(super) fn depth<B: Placed<N>, const N: usize>(
     solver: Out<qdist_solver>,
@@ -356,7 +358,7 @@ pub(super) fn depth<B: Placed<N>, const N: usize>(
     b: In<B>,
     options: In<qdist_options_f64>,
     result: Out<qdist_depth_f64>,
-    query: impl FnOnce(&mut Solver<'_, f64, N>, [&Body<'_, f64, N>; 2], &Options<'_, f64, N>) -> Depth<f64, N>,
+    query: impl FnOnce(&mut Solver<'_, f64, N>, [&Body<'_, f64, N>; 2], &Options<'_, f64, N>) -> Option<Depth<f64, N>>,
 ) -> Check {
     result.checked()?;
     let (one, other) = (a.get()?, b.get()?);
@@ -373,7 +375,7 @@ pub(super) fn depth<B: Placed<N>, const N: usize>(
     let (one, other) = (one.place(), other.place());
     let depth = match (&one, &other, &options) {
         (Ok(a), Ok(b), Ok((options, deadline))) => {
-            deadline.during(options, |options| query(&mut solver, [a, b], options))
+            deadline.during(options, |options| query(&mut solver, [a, b], options)).ok_or(QDIST_ERROR_ARGUMENT)?
         }
         (_, _, Err(status)) => return Err(*status),
         (Err(error), ..) | (_, Err(error), _) => return Err(from_body(*error)),

@@ -173,5 +173,5 @@ pub extern "C" fn qdist_depth2_f64(
     options: In<qdist_options_f64>,
     result: Out<qdist_depth_f64>,
 ) -> qdist_status {
-    status(depth(solver, a, b, options, result, |solver, [a, b], options| solver.depth(a, b, options)))
+    status(depth(solver, a, b, options, result, |solver, [a, b], options| Some(solver.depth(a, b, options))))
 }

@@ -22,6 +22,7 @@
 //! one-sided derivatives, each the least of those at all minimisers.
 
 use super::*;
+use qdist::internal::depth_by_routes;
 
 /// How a query ends, and where it looks first. NULL stands for the defaults. Start with qdist_options_default: absolute and
 /// relative must not both be 0.
@@ -156,8 +157,8 @@ pub extern "C" fn qdist_options_default_f64(options: Out<qdist_options_f64>) -> 
 /// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
 /// one of dimension 3. Swapping A and B turns the normal and swaps the points.
 ///
-/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; CALLBACK (a or b); NONFINITE
-/// (also: the difference of the bodies is too large).
+/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; ARGUMENT (a or b: `route` is NULL, so that no
+/// function has made the body); CALLBACK (a or b); NONFINITE (also: the difference of the bodies is too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn qdist_depth3_f64(
     solver: Out<qdist_solver>,
@@ -166,7 +167,7 @@ pub extern "C" fn qdist_depth3_f64(
     options: In<qdist_options_f64>,
     result: Out<qdist_depth_f64>,
 ) -> qdist_status {
-    status(depth(solver, a, b, options, result, |solver, [a, b], options| solver.depth(a, b, options)))
+    status(depth(solver, a, b, options, result, |solver, [a, b], options| depth_by_routes(solver, a, b, options)))
 }
 
 /// The depth d of the origin in the set A with respect to the unit set Q, in dimension 2, which is also the solver's. Q may be

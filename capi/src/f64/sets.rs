@@ -82,9 +82,9 @@ pub struct qdist_body_f64 {
     pub symmetry: u32,
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
-    /// How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
-    /// for your own sets.
-    pub turning: qdist_turning,
+    /// How depth is found, as the function that has made the body says: boxes by their axes, cylinders and cones by arcs of minimisers around theirs, your
+    /// own sets by expansion. A program does without the plans of shapes that it does not make.
+    pub route: qdist_route,
     /// NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
     /// shapes, points and hulls put it here. Called with set.user.
     pub precise: qdist_precise_f64,

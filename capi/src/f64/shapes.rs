@@ -122,7 +122,7 @@ pub(super) fn fill<S: Shape<N>, B: Placed<N>, const N: usize>(body: Out<B>, shap
     body.put(B::new(made, Stated { precise, ..Stated::of(&set) }))
 }
 
-placed!(qdist_body_f64, 3, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], symmetry, turning);
+placed!(qdist_body_f64, 3, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], symmetry, route);
 
 /// Makes a body of a sphere, in the identity pose, like all that follow.
 ///

@@ -15,12 +15,11 @@
 //! in circles, in some 20 operations on numbers up to M's extent: less than 32 u of it. A matrix that is a rotation up to
 //! s only makes circles of the set's circles up to 4 s times their size.
 
-use core::fmt;
-
 use super::answer::Depth;
 use super::axis::{AXIS_ROUNDOFFS, Axis};
 use super::body::{Body, skew};
 use super::pair::Pair;
+use super::route::Need;
 use super::sectors::{SectorsEnd, Spin};
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
@@ -46,74 +45,6 @@ const SHORTEST: f64 = 1e-3;
 /// Cosine of the angle between axis and edge beyond which minimisers lie on no arc that expansion could not tile.
 const ALIGNED: f64 = 0.75;
 
-/// How depth is found for a body of revolution, or an ellipsoid: what such a set hands to the solver ([`Support::turning`](crate::support::Support::turning)).
-/// The search is reached through it alone, so that a program without such a set does not contain it.
-#[derive(Clone, Copy)]
-pub struct Turning<T: Real> {
-    pub(super) depth: Route<T>,
-    /// Is the set an ellipsoid, with its axes along the coordinates, and none of revolution about the last?
-    pub(super) ellipsoid: bool,
-    /// The function that makes this: C carries it.
-    made_by: fn() -> Self,
-}
-
-type Route<T> =
-    fn(&mut Solver<'_, T, 3>, &mut Pair<'_, '_, T, 3>, Option<Axis<T>>, u32, &Options<'_, T, 3>) -> Depth<T>;
-
-impl<T: Real> Turning<T> {
-    /// For any set with [`Symmetry::Axis`].
-    pub fn new() -> Self {
-        Turning {
-            depth: |solver, pair, axis, calls, options| solver.depth_with_arcs(pair, axis, calls, options),
-            ellipsoid: false,
-            made_by: Self::new,
-        }
-    }
-
-    /// For an ellipsoid without that symmetry.
-    pub(crate) fn ellipsoid() -> Self {
-        Turning {
-            depth: |solver, pair, axis, calls, options| match pair.b.shape.turning() {
-                // (The first body's way is taken, if it has one: the second's is taken here.)
-                Some(other) if !other.ellipsoid => (other.depth)(solver, pair, axis, calls, options),
-                _ => solver.depth_with_ellipsoid(pair, calls, options),
-            },
-            ellipsoid: true,
-            made_by: Self::ellipsoid,
-        }
-    }
-
-    /// As a pointer that C can carry.
-    #[doc(hidden)]
-    pub fn into_raw(self) -> unsafe extern "C" fn() {
-        // SAFETY: function pointers are alike; this one is not called before `from_raw` has turned it back.
-        unsafe { core::mem::transmute::<fn() -> Self, unsafe extern "C" fn()>(self.made_by) }
-    }
-
-    /// Back from there.
-    ///
-    /// # Safety
-    /// The pointer comes from `into_raw` of the same scalar type.
-    #[doc(hidden)]
-    pub unsafe fn from_raw(raw: unsafe extern "C" fn()) -> Self {
-        // SAFETY: the caller's promise.
-        let make = unsafe { core::mem::transmute::<unsafe extern "C" fn(), fn() -> Self>(raw) };
-        make()
-    }
-}
-
-impl<T: Real> fmt::Debug for Turning<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Turning").field("ellipsoid", &self.ellipsoid).finish_non_exhaustive()
-    }
-}
-
-impl<T: Real> Default for Turning<T> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl<T: Real> Body<'_, T> {
     /// The axis that the placed body turns about, as far as its matrix is a rotation.
     fn axis(&self) -> Option<Vector<T, 3>> {
@@ -127,7 +58,7 @@ impl<T: Real> Pair<'_, '_, T, 3> {
     /// The first or the second body as the one whose arcs are searched for.
     fn spin(&self, first: bool) -> Option<Spin<T>> {
         let (body, other) = if first { (self.a, self.b) } else { (self.b, self.a) };
-        body.shape.turning()?;
+        body.shape.route().filter(|route| route.need == Need::Arcs)?;
         let axis = body.axis()?;
         let other = other.axis().map(|b| if b.dot(&axis) < T::zero() { -b } else { b });
         Some(Spin { axis, turns: true, first, offset: self.offset, other })
@@ -165,7 +96,8 @@ impl<T: Real> Pair<'_, '_, T, 3> {
 }
 
 impl<T: Real> Solver<'_, T, 3> {
-    fn depth_with_arcs(
+    /// Depth where one body turns.
+    pub(super) fn depth_with_arcs(
         &mut self,
         pair: &mut Pair<'_, '_, T, 3>,
         axis: Option<Axis<T>>,

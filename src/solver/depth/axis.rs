@@ -1,7 +1,10 @@
 //! The axis that two bodies turn about both.
 
+use super::answer::Depth;
+use super::arcs::NEARLY_COAXIAL;
 use super::body::{Body, skew};
 use super::pair::Pair;
+use super::second_look::is_shallow;
 use crate::math::{Vector, norm};
 use crate::qset::Ball;
 use crate::query::answer::Answer;
@@ -57,6 +60,33 @@ impl<T: Real> Pair<'_, '_, T, 3> {
 }
 
 impl<T: Real> Solver<'_, T, 3> {
+    /// The depth in a plane, where both bodies turn about one axis; else what `otherwise` finds.
+    pub(super) fn depth_about_axis(
+        &mut self,
+        a: &Body<'_, T>,
+        b: &Body<'_, T>,
+        options: &Options<'_, T, 3>,
+        otherwise: impl FnOnce(&mut Self, &mut Pair<'_, '_, T, 3>, Option<Axis<T>>, u32) -> Depth<T>,
+    ) -> Depth<T> {
+        let mut pair = match Pair::new(a, b) {
+            Ok(pair) => pair,
+            Err(failure) => return Depth::failed(failure),
+        };
+        let mut calls = pair.calls();
+        let axis = pair.axis(options.relative * T::of(NEARLY_COAXIAL));
+        if let Some(axis) = axis.filter(Axis::is_common)
+            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options)
+        {
+            // (What a plane of one word leaves open in shallow contact, expansion in two may close: at a pole, where no circle is to be tiled.)
+            return if is_shallow(&answer) && axis.has_pole(&answer.direction) {
+                self.conclude_pair(&pair, &answer, &pair.aimed(options))
+            } else {
+                Depth::new(&answer, &pair)
+            };
+        }
+        otherwise(self, &mut pair, axis, calls)
+    }
+
     /// The answer in a plane of the axis, as if both bodies turned about it: what they are off goes into the error. Adds to the support calls.
     pub(super) fn depth_on_axis(
         &mut self,

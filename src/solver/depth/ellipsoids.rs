@@ -22,6 +22,7 @@
 use super::answer::Depth;
 use super::body::{Body, SKEW_ROUNDOFFS, skew};
 use super::pair::Pair;
+use super::route::Need;
 use crate::bounds::Bracket;
 use crate::math::{Vector, norm, unit};
 use crate::polytope::simplex::Simplex;
@@ -37,7 +38,7 @@ const NEARLY_PARALLEL: f64 = 0.0625;
 impl<T: Real> Body<'_, T> {
     fn is_ellipsoid(&self) -> bool {
         // (What is measured from another point than its center has its offset from there.)
-        self.shape.turning().is_some_and(|turning| turning.ellipsoid) && self.shape.center().is_none()
+        self.shape.route().is_some_and(|route| route.need == Need::Ellipsoid) && self.shape.center().is_none()
     }
 }
 

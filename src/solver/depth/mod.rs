@@ -14,8 +14,8 @@
 //! # Where it is found
 //!
 //! * `body` is a set with a place in the world, `pair` two of them as one set, M; `answer` is what is said of it.
-//! * The first of these that can answers: `half_space`, in a closed form; `axis`, in a plane (`meridian`), where both bodies turn about one axis; where one of
-//!   them does, `arcs` (by `sectors`), and `ellipsoids`; else expansion.
+//! * `half_space` answers in a closed form. Other bodies name a `route`, by what their shapes need: expansion; `axis`, in a plane (`meridian`), where both
+//!   bodies turn about one axis; where one of them does, `arcs` (by `sectors`), and `ellipsoids`.
 //! * Where rounding leaves an answer open, `second_look` asks again, in two words where that serves (`fine`).
 
 use crate::qset::Ball;
@@ -24,11 +24,9 @@ use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use answer::Depth;
-use arcs::NEARLY_COAXIAL;
-use axis::Axis;
 use body::Body;
 use pair::Pair;
-use second_look::is_shallow;
+use route::Route;
 
 pub(crate) mod answer;
 pub(crate) mod arcs;
@@ -41,6 +39,7 @@ mod fine;
 pub(crate) mod half_space;
 mod meridian;
 mod pair;
+pub(crate) mod route;
 mod second_look;
 mod sectors;
 
@@ -54,27 +53,20 @@ impl<T: Real> Solver<'_, T, 3> {
         if let Some(depth) = unbounded(a, b, options) {
             return depth;
         }
-        let mut pair = match Pair::new(a, b) {
-            Ok(pair) => pair,
-            Err(failure) => return Depth::failed(failure),
-        };
-        let mut calls = pair.calls();
-        let axis = pair.axis(options.relative * T::of(NEARLY_COAXIAL));
-        if let Some(axis) = axis.filter(Axis::is_common)
-            && let Some(answer) = self.depth_on_axis(&mut pair, &axis, &mut calls, options)
-        {
-            // (What a plane of one word leaves open in shallow contact, expansion in two may close: at a pole, where no circle is to be tiled.)
-            return if is_shallow(&answer) && axis.has_pole(&answer.direction) {
-                self.conclude_pair(&pair, &answer, &pair.aimed(options))
-            } else {
-                Depth::new(&answer, &pair)
-            };
-        }
-        match a.shape.turning().or(b.shape.turning()) {
-            Some(turning) => (turning.depth)(self, &mut pair, axis, calls, options),
-            None => self.expand_pair(&pair, calls, options),
-        }
+        let of = |body: &Body<'_, T>| body.shape.route().unwrap_or_else(Route::axis);
+        Route::find([of(a), of(b)], self, a, b, options)
     }
+}
+
+/// [`Solver::depth`] of bodies with an end, by the routes that their shapes name, both of them: nothing else is linked. `None` where one does not.
+#[doc(hidden)]
+pub fn by_routes<T: Real>(
+    solver: &mut Solver<'_, T, 3>,
+    a: &Body<'_, T>,
+    b: &Body<'_, T>,
+    options: &Options<'_, T, 3>,
+) -> Option<Depth<T>> {
+    Some(Route::find([a.shape.route()?, b.shape.route()?], solver, a, b, options))
 }
 
 impl<T: Real> Solver<'_, T, 2> {

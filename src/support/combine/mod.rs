@@ -12,7 +12,7 @@
 use nalgebra::SMatrix;
 
 use super::range::above;
-use super::{Failure, Support, Symmetry, Turning};
+use super::{Failure, Route, Support, Symmetry};
 use crate::math::{TwoWords, Vector};
 use crate::scalar::Real;
 use crate::solver::depth::half_space::Unbounded;
@@ -126,8 +126,8 @@ impl<T: Real, const N: usize, S: Support<T, N> + ?Sized> Support<T, N> for &S {
     fn unbounded(&self) -> Option<&dyn Unbounded<T, N>> {
         (**self).unbounded()
     }
-    fn turning(&self) -> Option<Turning<T>> {
-        (**self).turning()
+    fn route(&self) -> Option<Route<T>> {
+        (**self).route()
     }
     fn mirrored(&self, signs: u8) -> bool {
         (**self).mirrored(signs)
@@ -160,7 +160,7 @@ mod tests {
         let points = (set.support(&u), set.support_with_witness(&u), set.exhaustive(&u));
         let two = set.support_in_two_words(&TwoWords::from(u));
         let lengths = [set.radius(), set.rolling_radius(), set.extent(), set.error()];
-        let kinds = (set.has_shortcuts(), set.symmetry(), set.unbounded().is_some(), set.turning().is_some());
+        let kinds = (set.has_shortcuts(), set.symmetry(), set.unbounded().is_some(), set.route().is_some());
         let mirrors = ([0, 1, 2, 3, 4, 5, 6, 7].map(|signs| set.mirrored(signs)), set.contains_origin());
         (points, two, lengths, kinds, mirrors, set.center(), [set.errors(), set.extents()])
     }
