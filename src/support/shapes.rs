@@ -186,6 +186,9 @@ impl<T: Real, const N: usize> Support<T, N> for BoxShape<T, N> {
     fn extent(&self) -> T {
         length(&self.half)
     }
+    fn route(&self) -> Option<Route<T>> {
+        if const { N == 3 } { Some(Route::boxes()) } else { None }
+    }
     fn mirrored(&self, _signs: u8) -> bool {
         true
     }

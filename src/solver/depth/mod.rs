@@ -14,7 +14,7 @@
 //! # Where it is found
 //!
 //! * `body` is a set with a place in the world, `pair` two of them as one set, M; `answer` is what is said of it.
-//! * `half_space` answers in a closed form. Other bodies name a `route`, by what their shapes need: expansion; `axis`, in a plane (`meridian`), where both
+//! * `half_space` answers in a closed form. Other bodies name a `route`, by what their shapes need: `boxes`, by their axes; expansion; `axis`, in a plane (`meridian`), where both
 //!   bodies turn about one axis; where one of them does, `arcs` (by `sectors`), and `ellipsoids`.
 //! * Where rounding leaves an answer open, `second_look` asks again, in two words where that serves (`fine`).
 
@@ -32,6 +32,8 @@ pub(crate) mod answer;
 pub(crate) mod arcs;
 mod axis;
 pub(crate) mod body;
+mod boxes;
+mod closed;
 #[cfg(test)]
 mod dice;
 mod ellipsoids;

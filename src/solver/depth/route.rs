@@ -7,6 +7,7 @@ use core::fmt;
 
 use super::answer::Depth;
 use super::body::Body;
+use super::boxes;
 use super::pair::Pair;
 use crate::query::Options;
 use crate::scalar::Real;
@@ -15,6 +16,8 @@ use crate::solver::Solver;
 /// What a body needs to be measured, from little to much: a plan serves all bodies that need less as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Need {
+    /// The axes of two boxes.
+    Boxes,
     /// Expansion: any convex body.
     Expansion,
     /// A look whether both bodies turn about one axis, then expansion.
@@ -37,6 +40,11 @@ pub struct Route<T: Real> {
 type Find<T> = fn(&mut Solver<'_, T, 3>, &Body<'_, T>, &Body<'_, T>, &Options<'_, T, 3>) -> Depth<T>;
 
 impl<T: Real> Route<T> {
+    /// For a box: with another one, the axes of both. (With anything else, that one's route is taken.)
+    pub(crate) fn boxes() -> Self {
+        Route { need: Need::Boxes, find: |_, a, b, options| boxes::depth(a, b, options), made_by: Self::boxes }
+    }
+
     /// For any set: expansion.
     pub fn expansion() -> Self {
         let find: Find<T> = |solver, a, b, options| match Pair::new(a, b) {

@@ -73,7 +73,7 @@ use crate::query::Query;
 use crate::query::answer::{Answer, Plan};
 use crate::scalar::Real;
 use heapless::Vec;
-use level::Level;
+pub(super) use level::Level;
 pub(super) use recorder::Recorder;
 
 /// Steps in two words. (Polyhedra need one or two, curved bodies some ten.)

@@ -40,12 +40,11 @@ mod plane;
 
 use super::answer::Depth;
 use super::body::Body;
-use crate::bounds::{Bracket, Tolerance};
+use super::closed::{Found, is_enough};
 use crate::math::{Vector, finite, largest};
 use crate::query::Options;
-use crate::query::answer::{Outcome, Stop};
 use crate::scalar::Real;
-use crate::support::failure::{NOT_FINITE, TOO_LARGE, UNBOUNDED};
+use crate::support::failure::{NOT_FINITE, UNBOUNDED};
 use crate::support::range::check_numbers;
 use crate::support::{Failure, ShapeError, Support};
 use plane::Plane;
@@ -141,62 +140,8 @@ impl<T: Real, const N: usize> Unbounded<T, N> for HalfSpace<T, N> {
             Some(wall) => Ok(plane.facing(&Plane::new(wall, other))),
         };
         match found {
-            Ok(found) if found.is_sound() => found.conclude(first, options),
-            Ok(_) => Depth::failed(Failure(TOO_LARGE)),
+            Ok(found) => (if first { found.swapped() } else { found }).conclude(options),
             Err(failure) => Depth::failed(failure),
         }
     }
-}
-
-/// What was found: A against B where B is the half space.
-struct Found<T: Real, const N: usize> {
-    bracket: Bracket<T>,
-    /// Unit vector from A into the half space.
-    normal: Vector<T, N>,
-    on_a: Vector<T, N>,
-    on_b: Vector<T, N>,
-    calls: u32,
-    outcome: Option<Outcome>,
-}
-
-impl<T: Real, const N: usize> Found<T, N> {
-    /// Did no product overflow?
-    fn is_sound(&self) -> bool {
-        let (lower, upper) = (self.bracket.lower, self.bracket.upper);
-        lower.finite() && upper.finite() && [&self.normal, &self.on_a, &self.on_b].iter().all(|v| finite(v))
-    }
-
-    /// The answer for A and the half space, or the other way round.
-    fn conclude(self, half_space_first: bool, options: &Options<'_, T, N>) -> Depth<T, N> {
-        let Bracket { lower, upper } = self.bracket;
-        let met = upper < T::HUGE && is_met(&self.bracket, options);
-        let stop = decided(&self.bracket, options);
-        let outcome = match (stop, self.outcome) {
-            (Stop::Met, Some(outcome)) => outcome,
-            // The bracket is always as narrow as arithmetic allows.
-            _ => stop.outcome(lower, upper, met, lower <= T::zero() && upper < T::HUGE),
-        };
-        let (normal, point_a, point_b) =
-            if half_space_first { (-self.normal, self.on_b, self.on_a) } else { (self.normal, self.on_a, self.on_b) };
-        let support_calls = self.calls;
-        Depth { outcome, lower, upper, normal, point_a, point_b, dimension: N, support_calls, ..Depth::unknown() }
-    }
-}
-
-fn is_met<T: Real, const N: usize>(bracket: &Bracket<T>, options: &Options<'_, T, N>) -> bool {
-    Tolerance { absolute: options.absolute, relative: options.relative }.met(bracket)
-}
-
-/// What the bracket says of the threshold.
-fn decided<T: Real, const N: usize>(bracket: &Bracket<T>, options: &Options<'_, T, N>) -> Stop {
-    match options.threshold {
-        Some(threshold) if bracket.lower >= threshold => Stop::Above,
-        Some(threshold) if bracket.upper < threshold => Stop::Below,
-        _ => Stop::Met,
-    }
-}
-
-/// Does the bracket answer the query?
-fn is_enough<T: Real, const N: usize>(bracket: &Bracket<T>, options: &Options<'_, T, N>) -> bool {
-    is_met(bracket, options) || decided(bracket, options) != Stop::Met
 }
