@@ -11,7 +11,7 @@ use common::dice::Dice;
 use common::hull::{ExactHull, signed_depth};
 use common::lattice::{Lattice, Lean, ball, symmetric, truth};
 use nalgebra::{Matrix3, Rotation3, Unit};
-use qdist::support::{Ellipsoid, Failure, HalfSpace, Points, Sphere, Support, Symmetry, Turning};
+use qdist::support::{Ellipsoid, Failure, HalfSpace, Points, Route, Sphere, Support, Symmetry};
 use qdist::{Body, Depth, Options, Real, TwoWords, Vector, Workspace};
 
 /// So many cases, or more: MORE=100 searches for what a hundred times as many would show.
@@ -354,8 +354,8 @@ impl<T: Real> Support<T, 3> for Turned {
     fn symmetry(&self) -> Symmetry {
         Symmetry::Axis
     }
-    fn turning(&self) -> Option<Turning<T>> {
-        Some(Turning::new())
+    fn route(&self) -> Option<Route<T>> {
+        Some(Route::arcs())
     }
 }
 

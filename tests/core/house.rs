@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The arrows that point up, each for a reason.
 const UP: &[(&str, &str)] = &[
     // A shape names the way in which depth is found with it: so a program that has no such shape does not contain it.
-    ("support", "solver::depth::arcs::Turning"),
+    ("support", "solver::depth::route::Route"),
     ("support", "solver::depth::half_space"),
 ];
 

@@ -3,7 +3,7 @@
 //!
 //! In this order, until one ends the query:
 //!
-//! 1. Two bodies of revolution that are coaxial up to [`NEARLY_COAXIAL`] of the tolerance are measured in one plane through the axis (module
+//! 1. Two bodies of revolution that are coaxial up to [`NEARLY_COAXIAL`](super::axis::NEARLY_COAXIAL) of the tolerance are measured in one plane through the axis (module
 //!    `meridian`), as if they were coaxial; the bracket is wider by what they are not.
 //! 2. Expansion as for any pair, but only to [`PATIENCE`] vertices: enough where the minimiser is not on an arc.
 //! 3. The sectors around each body's axis.
@@ -29,9 +29,6 @@ use crate::query::{Options, Query};
 use crate::scalar::Real;
 use crate::solver::Solver;
 use crate::support::{Failure, Support, Symmetry};
-
-/// Two axes are as good as one if what they are off is this share of the relative tolerance.
-pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
 
 /// More vertices than expansion takes where no minimisers lie on an arc.
 const PATIENCE: usize = 48;

@@ -1,7 +1,6 @@
 //! The axis that two bodies turn about both.
 
 use super::answer::Depth;
-use super::arcs::NEARLY_COAXIAL;
 use super::body::{Body, skew};
 use super::pair::Pair;
 use super::second_look::is_shallow;
@@ -15,6 +14,9 @@ use crate::support::{Support, Symmetry};
 
 /// Lengths that an axis may be off, in roundoffs of the bodies' extents: what poses computed from one another are.
 pub(super) const AXIS_ROUNDOFFS: usize = 64;
+
+/// Two axes are as good as one if what they are off is this share of the relative tolerance.
+pub(super) const NEARLY_COAXIAL: f64 = 0.0625;
 
 /// The axis of two bodies of revolution, or of one and a ball.
 #[derive(Clone, Copy)]

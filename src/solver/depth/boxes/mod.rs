@@ -39,7 +39,7 @@ use crate::query::Options;
 use crate::query::answer::Outcome;
 use crate::scalar::Real;
 use nearest::nearest;
-use zonotope::{EDGES, Zonotope, length};
+use zonotope::{EDGES, Normal, Zonotope, length};
 
 /// The pairs of segments that span faces, those of one body first: where an axis is as good as theirs, theirs are known better.
 const FACES: [(usize, usize); 15] = [
@@ -79,32 +79,23 @@ struct Axes<T: Real> {
     height: T,
 }
 
-/// What a unit vector proves.
-struct Above<T: Real> {
-    /// d is not above.
-    upper: T,
-    normal: Vector<T, 3>,
-    /// Nor is that of the cores.
-    core: T,
-}
-
 impl<T: Real> Zonotope<T> {
     fn depth(&self, options: &Options<'_, T, 3>) -> Found<T, 3> {
         let axes = self.axes();
         let most = axes.height + self.error_in_one_word();
         if axes.least > T::zero() {
-            let bracket = self.with_balls(axes.least, most);
+            let bracket = self.with_balls(&Bracket { lower: axes.least, upper: most });
             if is_enough(&bracket, options) {
-                return self.touching(bracket, axes.normal, axes.height);
+                return self.overlapping(bracket, axes.normal, axes.height, options);
             }
         } else if most < T::zero() {
-            return self.apart(axes.normal, self.with_balls(most, most).upper, options);
+            return self.apart(axes.normal, most, options);
         }
-        let (bracket, normal, core) = self.in_two_words(&axes, most);
-        if core < T::zero() {
-            self.apart(normal, bracket.upper, options)
+        let (core, normal) = self.in_two_words(&axes, most);
+        if core.lower > T::zero() {
+            self.overlapping(self.with_balls(&core), normal, core.upper, options)
         } else {
-            self.touching(bracket, normal, core)
+            self.apart(normal, core.upper, options)
         }
     }
 
@@ -138,86 +129,106 @@ impl<T: Real> Zonotope<T> {
         axes
     }
 
-    /// The bracket, the direction that proves its upper end, and the height of the core along it: in two words, along the axes that one word leaves in question.
+    /// The bracket of the cores, should they overlap, and the direction that proves its upper end: in two words, along the axes that one word leaves in question.
     #[inline(never)]
-    fn in_two_words(&self, axes: &Axes<T>, most: T) -> (Bracket<T>, Vector<T, 3>, T) {
-        let mut lower = T::HUGE;
-        let mut best = Above { upper: T::HUGE, normal: axes.normal, core: axes.height };
+    fn in_two_words(&self, axes: &Axes<T>, most: T) -> (Bracket<T>, Vector<T, 3>) {
+        let (mut lower, mut moved) = (T::HUGE, T::zero());
+        let (mut upper, mut normal) = (T::HUGE, axes.normal);
         for (&known, &(i, j)) in axes.lower.iter().zip(&FACES) {
             if known > most {
-                lower = lower.at_most(known + self.ball - self.blur(known));
+                lower = lower.at_most(known);
                 continue;
             }
-            let Some((n, share)) = self.normal_in_two_words(i, j) else { continue };
+            let (n, blur) = match self.normal_in_two_words(i, j) {
+                Normal::None => continue,
+                Normal::Unknown => {
+                    moved = self.whole_error();
+                    continue;
+                }
+                Normal::Known(n, blur) => (n, blur),
+            };
             let n = if self.center().dot(&n.high) > T::zero() { -n } else { n };
             let coordinates = self.farthest(&n);
             let point = self.place(&coordinates);
-            let level = Level::new(n, [self.ball, T::zero()], self.error + self.error * share + self.ball_error);
-            lower = lower.at_most(level.lower(&[point]) - self.error);
-            let above = self.above(&unit(&n.high), Some((&coordinates, &point)));
-            if above.upper < best.upper {
-                best = above;
+            lower = lower.at_most(Level::new(n, [T::zero(); 2], self.error(&n.high, &blur)).lower(&[point]));
+            // (Along the rounded vector, mostly the same point is farthest.)
+            let rounded = unit(&n.high);
+            let height = self.not_above(&rounded, T::zero(), Some((&coordinates, &point)));
+            if height < upper {
+                (upper, normal) = (height, rounded);
             }
         }
-        if best.upper >= T::HUGE {
-            best = self.above(&axes.normal, None);
+        if upper >= T::HUGE {
+            upper = self.not_above(&normal, T::zero(), None);
         }
-        (Bracket { lower: lower.at_most(best.upper), upper: best.upper }, best.normal, best.core)
+        (Bracket { lower: (lower - moved).at_most(upper), upper }, normal)
     }
 
-    /// What a unit vector proves. A point of M that is farthest along nearly the same one may be known.
-    fn above(&self, n: &Vector<T, 3>, known: Option<(&[T; EDGES], &TwoWords<T, 3>)>) -> Above<T> {
+    /// An upper bound of d that a unit vector proves, for a ball term like this. A point of M may be known that is farthest along nearly the same vector.
+    fn not_above(&self, n: &Vector<T, 3>, ball: T, known: Option<(&[T; EDGES], &TwoWords<T, 3>)>) -> T {
         let exact = TwoWords::from(*n);
         let coordinates = self.farthest(&exact);
         let point = match known {
             Some((same, point)) if *same == coordinates => *point,
             _ => self.place(&coordinates),
         };
-        let upper = Level::new(exact, [self.ball, T::zero()], self.error + self.ball_error).upper(&point);
-        let core = if self.ball.is_zero() {
-            upper
-        } else {
-            Level::new(exact, [T::zero(); 2], self.error).upper(&point)
-        };
-        Above { upper, normal: *n, core }
+        Level::new(exact, [ball, T::zero()], self.error(n, &Vector::zeros()) + self.ball_error).upper(&point)
     }
 
     /// The bracket of boxes that overlap with ball terms, from that of their cores.
-    fn with_balls(&self, lower: T, upper: T) -> Bracket<T> {
-        Bracket { lower: lower + self.ball - self.blur(lower), upper: upper + self.ball + self.blur(upper) }
+    fn with_balls(&self, core: &Bracket<T>) -> Bracket<T> {
+        // What the ball terms are off, and the rounding of adding them.
+        let blur = |x: T| self.ball_error + (x.abs() + self.ball) * (T::count(4) * T::ROUNDOFF);
+        Bracket { lower: core.lower + self.ball - blur(core.lower), upper: core.upper + self.ball + blur(core.upper) }
     }
 
-    /// What the ball terms are off, and the rounding of adding them to a number.
-    fn blur(&self, x: T) -> T {
-        self.ball_error + (x.abs() + self.ball) * (T::count(4) * T::ROUNDOFF)
-    }
-
-    /// The answer for boxes that overlap, or touch, with the points that touch after `height` along the normal.
-    fn touching(&self, bracket: Bracket<T>, normal: Vector<T, 3>, height: T) -> Found<T, 3> {
+    /// The answer for boxes that overlap, with the points that touch after `height` along the normal.
+    fn overlapping(
+        &self,
+        bracket: Bracket<T>,
+        normal: Vector<T, 3>,
+        height: T,
+        options: &Options<'_, T, 3>,
+    ) -> Found<T, 3> {
         let start = self.farthest(&TwoWords::from(normal));
         let point = nearest(self, start, &(normal * height), false);
-        self.found(bracket, normal, &point.coordinates)
+        self.found(self.as_asked(bracket, options), normal, &point.coordinates)
     }
 
-    /// The answer for boxes that are apart, certainly: seen along this unit vector, which proves this upper bound.
+    /// The answer for boxes whose cores do not certainly overlap, seen along this unit vector, which proves this upper bound for the cores.
     #[inline(never)]
-    fn apart(&self, normal: Vector<T, 3>, upper: T, options: &Options<'_, T, 3>) -> Found<T, 3> {
+    fn apart(&self, normal: Vector<T, 3>, core: T, options: &Options<'_, T, 3>) -> Found<T, 3> {
         let start = self.farthest(&TwoWords::from(normal));
+        let upper = self.with_balls(&Bracket { lower: core, upper: core }).upper;
         // (Where that decides, nothing is searched.)
         if options.threshold.is_some_and(|threshold| upper < threshold) {
             return self.found(Bracket { lower: self.not_below(&start), upper }, normal, &start);
         }
         let point = nearest(self, start, &Vector::zeros(), true);
-        let seen = self.above(&point.toward, None);
-        let (upper, normal) = if seen.upper < upper { (seen.upper, seen.normal) } else { (upper, normal) };
-        self.found(Bracket { lower: self.not_below(&point.coordinates), upper }, normal, &point.coordinates)
+        let seen = self.not_above(&point.toward, self.ball, None);
+        let (upper, normal) = if seen < upper { (seen, point.toward) } else { (upper, normal) };
+        let bracket = Bracket { lower: self.not_below(&point.coordinates), upper };
+        self.found(self.as_asked(bracket, options), normal, &point.coordinates)
+    }
+
+    /// No more is claimed than was asked for. Boxes are described by rounded numbers, and a bracket that contains what these stand for is worth more than
+    /// one that is narrower.
+    fn as_asked(&self, bracket: Bracket<T>, options: &Options<'_, T, 3>) -> Bracket<T> {
+        let rounding = self.size * (T::count(2) * T::ROUNDOFF);
+        let wider = Bracket { lower: bracket.lower - rounding, upper: bracket.upper + rounding };
+        if is_enough(&wider, options) { wider } else { bracket }
     }
 
     /// A point of M: d is not below minus its distance, the ball terms added.
     fn not_below(&self, coordinates: &[T; EDGES]) -> T {
-        let (root, slip) = length(&self.place(coordinates));
+        let point = self.place(coordinates);
+        let (root, slip) = length(&point);
         let distance = (root - self.ball) + slip;
-        -(distance + self.error + self.ball_error + (distance.abs() + slip.abs()) * (T::count(4) * T::ROUNDOFF))
+        // |x + e| <= |x| + e.x / |x| + |e|^2 / (2 |x|), and not above |x| + |e|.
+        let whole = self.whole_error();
+        let along = self.error(&unit(&point.high), &Vector::zeros()) + whole * (whole / root.at_least(T::TINY));
+        let error = along.at_most(whole) + self.ball_error;
+        -(distance + error + (distance.abs() + slip.abs()) * (T::count(4) * T::ROUNDOFF))
     }
 
     fn found(&self, bracket: Bracket<T>, normal: Vector<T, 3>, coordinates: &[T; EDGES]) -> Found<T, 3> {

@@ -51,25 +51,7 @@ pub(super) fn nearest<T: Real>(
         };
         let basis = span(m, &free);
         let steps = solve(&basis, &x);
-        // As far as the first end of an interval.
-        let (mut share, mut blocked) = (T::one(), None);
-        for (row, &step) in basis.iter().zip(&steps) {
-            let (Some(&at), Some(&w)) = (s.get(row.edge), m.half.get(row.edge)) else { continue };
-            let room = if step > T::zero() { w - at } else { w + at };
-            if magnitude(step) * share > room {
-                share = room / magnitude(step);
-                blocked = Some((row.edge, if step > T::zero() { w } else { -w }));
-            }
-        }
-        for (row, &step) in basis.iter().zip(&steps) {
-            if let (Some(at), Some(&w)) = (s.get_mut(row.edge), m.half.get(row.edge)) {
-                *at = (*at + step * share).at_most(w).at_least(-w);
-            }
-        }
-        if let Some((edge, end)) = blocked {
-            if let Some(at) = s.get_mut(edge) {
-                *at = end;
-            }
+        if let Some(edge) = step(m, &basis, &steps, &mut s) {
             free.retain(|&other| other != edge);
             continue;
         }
@@ -77,14 +59,7 @@ pub(super) fn nearest<T: Real>(
         // What pulls most strongly, and more than rounding does.
         let size = if exact { norm(&found) } else { m.size };
         let least = size * (T::count(8) * T::ROUNDOFF);
-        let (mut most, mut next) = (T::zero(), None);
-        for (k, (g, (&at, &w))) in m.along.iter().zip(s.iter().zip(&m.half)).enumerate() {
-            let pull = g.dot(&found);
-            let inward = if at > T::zero() { pull } else { -pull };
-            if inward > most.at_least(least) && w > T::zero() && !free.contains(&k) {
-                (most, next) = (inward, Some(k));
-            }
-        }
+        let next = strongest(m, &s, &free, &found, least);
         if next.is_some_and(|k| free.push(k).is_ok()) {
             continue;
         }
@@ -94,6 +69,48 @@ pub(super) fn nearest<T: Real>(
         exact = true;
     }
     Nearest { coordinates: s, toward: -unit(&found) }
+}
+
+/// Goes so far, or to the first end of an interval: that of which edge?
+fn step<T: Real>(m: &Zonotope<T>, basis: &[Free<T>], steps: &[T; 3], s: &mut [T; EDGES]) -> Option<usize> {
+    let (mut share, mut blocked) = (T::one(), None);
+    for (row, &step) in basis.iter().zip(steps) {
+        let (Some(&at), Some(&w)) = (s.get(row.edge), m.half.get(row.edge)) else { continue };
+        let room = if step > T::zero() { w - at } else { w + at };
+        if magnitude(step) * share > room {
+            share = room / magnitude(step);
+            blocked = Some((row.edge, if step > T::zero() { w } else { -w }));
+        }
+    }
+    for (row, &step) in basis.iter().zip(steps) {
+        if let (Some(at), Some(&w)) = (s.get_mut(row.edge), m.half.get(row.edge)) {
+            *at = (*at + step * share).at_most(w).at_least(-w);
+        }
+    }
+    let (edge, end) = blocked?;
+    if let Some(at) = s.get_mut(edge) {
+        *at = end;
+    }
+    Some(edge)
+}
+
+/// The edge, of those that are not free, that pulls inward most strongly, and more than `least`.
+fn strongest<T: Real>(
+    m: &Zonotope<T>,
+    s: &[T; EDGES],
+    free: &[usize],
+    residual: &Vector<T, 3>,
+    least: T,
+) -> Option<usize> {
+    let (mut most, mut next) = (least, None);
+    for (k, (g, (&at, &w))) in m.along.iter().zip(s.iter().zip(&m.half)).enumerate() {
+        let pull = g.dot(residual);
+        let inward = if at > T::zero() { pull } else { -pull };
+        if inward > most && w > T::zero() && !free.contains(&k) {
+            (most, next) = (inward, Some(k));
+        }
+    }
+    next
 }
 
 /// The free edges, made orthogonal one after the other. What is parallel to others is left out.

@@ -10,6 +10,16 @@ use crate::support::range::signed;
 /// The edges of two boxes.
 pub(super) const EDGES: usize = 6;
 
+/// The normal of a face that two edges span.
+pub(super) enum Normal<T: Real> {
+    /// They are parallel: there is no such face.
+    None,
+    /// They are so nearly parallel that M changes by less than E when they are.
+    Unknown,
+    /// A unit vector, and what it is off, for [`Zonotope::error`].
+    Known(TwoWords<T, 3>, Vector<T, 3>),
+}
+
 /// A - B of two boxes A and B (see the module's head).
 pub(super) struct Zonotope<T: Real> {
     /// Columns of A's matrix, then of B's: g.
@@ -19,8 +29,8 @@ pub(super) struct Zonotope<T: Real> {
     places: [Vector<T, 3>; 2],
     /// Bounds what is added up in one word: S.
     pub size: T,
-    /// Of heights and points in two words: E.
-    pub error: T,
+    /// Bounds what is added up in two words, axis by axis of the world.
+    sizes: Vector<T, 3>,
     pub balls: [T; 2],
     /// The sum of both.
     pub ball: T,
@@ -50,17 +60,19 @@ impl<T: Real> Zonotope<T> {
             return Err(Failure(NOT_FINITE));
         }
         let rolled = |body: &Body<'_, T>| match body.shape.rolling_radius() {
-            rolling if rolling > T::zero() => (skew(&body.rotation) * T::count(2) + T::count(8) * T::ROUNDOFF) * rolling,
+            rolling if rolling > T::zero() => {
+                (skew(&body.rotation) * T::count(2) + T::count(8) * T::ROUNDOFF) * rolling
+            }
             _ => T::zero(),
         };
+        let places_sizes = places[0].abs() + places[1].abs();
+        let sizes = along.iter().zip(&half).fold(places_sizes, |sizes, (g, &w)| sizes + g.abs() * w);
         Ok(Zonotope {
             along,
             half,
             places,
             size: (edges + sum(&(places[0] - places[1]))) * T::of(1.01),
-            error: (edges + edges + sum(&places[0]) + sum(&places[1]) + ball)
-                * (T::count(1 << 14) * T::ROUNDOFF * T::ROUNDOFF)
-                + T::count(1 << 10) * T::TINY,
+            sizes,
             balls,
             ball,
             ball_error: rolled(a) + rolled(b),
@@ -132,10 +144,21 @@ impl<T: Real> Zonotope<T> {
         sum
     }
 
-    /// g_i x g_j as a unit vector, and its error as a share of E; `None` where they are parallel, as far as that can be told.
+    /// E: of heights in two words along a unit vector that is off by no more than 2^12 u^2 `blur`.
+    pub fn error(&self, n: &Vector<T, 3>, blur: &Vector<T, 3>) -> T {
+        ((n.abs() + blur).dot(&self.sizes) + self.ball) * (T::count(1 << 14) * T::ROUNDOFF * T::ROUNDOFF)
+            + T::count(1 << 10) * T::TINY
+    }
+
+    /// E of all directions.
+    pub fn whole_error(&self) -> T {
+        self.error(&Vector::repeat(T::one()), &Vector::zeros())
+    }
+
+    /// g_i x g_j.
     #[inline(never)]
-    pub fn normal_in_two_words(&self, i: usize, j: usize) -> Option<(TwoWords<T, 3>, T)> {
-        let (x, y) = (self.along.get(i)?, self.along.get(j)?);
+    pub fn normal_in_two_words(&self, i: usize, j: usize) -> Normal<T> {
+        let (Some(x), Some(y)) = (self.along.get(i), self.along.get(j)) else { return Normal::None };
         let dot = x.dot(y);
         let near = if magnitude(dot) > T::of(0.75) { signed(T::one(), dot) } else { T::zero() };
         let e: TwoWords<T, 3> = TwoWords::of(|k| {
@@ -153,8 +176,15 @@ impl<T: Real> Zonotope<T> {
             sum
         });
         let (length, reach) = (norm(&n.high), norm(&e.high));
-        let known = length > reach * (T::count(1 << 10) * T::ROUNDOFF * T::ROUNDOFF) && length > T::count(1 << 10) * T::TINY;
-        known.then(|| (n.unit(), reach / length * T::of(0.0625)))
+        if reach.is_zero() {
+            return Normal::None;
+        }
+        if !(length > reach * (T::count(1 << 10) * T::ROUNDOFF * T::ROUNDOFF) && length > T::count(1 << 10) * T::TINY) {
+            return Normal::Unknown;
+        }
+        let (x, e) = (x.abs(), e.high.abs() * (T::of(0.0625) / length));
+        let blur = Vector::<T, 3>::new(x[1] * e[2] + x[2] * e[1], x[2] * e[0] + x[0] * e[2], x[0] * e[1] + x[1] * e[0]);
+        Normal::Known(n.unit(), blur)
     }
 
     /// The error of heights in one word along a unit vector, and of that vector.

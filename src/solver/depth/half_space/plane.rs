@@ -121,7 +121,15 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
         };
         let normal = -self.normal.high * inverse;
         let on_a = relative(&Vector::zeros()).high + normal * deepest.balls.iter().fold(T::zero(), |sum, &r| sum + r);
-        Found { bracket, normal, on_a, on_b: on_a - normal * depth, calls: 1 + anchor.calls, outcome: None, dimension: N }
+        Found {
+            bracket,
+            normal,
+            on_a,
+            on_b: on_a - normal * depth,
+            calls: 1 + anchor.calls,
+            outcome: None,
+            dimension: N,
+        }
     }
 
     /// The direction into the half space in the frame of a body, -R^T w, and a bound of what both words leave out.
@@ -163,7 +171,15 @@ impl<'b, 'a, T: Real, const N: usize> Plane<'b, 'a, T, N> {
                 let slack = lost * inverse * T::of(1.01) + Self::slack(first.abs() + second.abs() + depth.abs());
                 let upper = if told.is_some() { depth + slack } else { T::HUGE };
                 let bracket = Bracket { lower: depth - slack, upper };
-                Found { bracket, normal, on_a: foot, on_b: foot - normal * depth, calls: 0, outcome: None, dimension: N }
+                Found {
+                    bracket,
+                    normal,
+                    on_a: foot,
+                    on_b: foot - normal * depth,
+                    calls: 0,
+                    outcome: None,
+                    dimension: N,
+                }
             }
         }
     }
