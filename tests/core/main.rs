@@ -5,6 +5,7 @@
 mod common;
 
 mod arcs;
+mod boxes;
 mod brackets;
 mod cases;
 mod certificates;
