@@ -108,5 +108,27 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sqrtf, 1e-4, 0x800, 0x7F80_0000);
-real!(f64, libm::sqrt, 1e-6, 0x400_0000, 0x7FF0_0000_0000_0000);
+/// Square roots without the standard library. libm's are made of integers, but for the processors that it knows.
+#[cfg(not(any(test, feature = "std")))]
+mod root {
+    // A function with a body of one instruction, since the compiler has no name for it here: hard-float Cortex-M4F, M7 and their like pass the argument in s0.
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    #[unsafe(naked)]
+    pub extern "C" fn single(x: f32) -> f32 {
+        core::arch::naked_asm!(".fpu fpv4-sp-d16", "vsqrt.f32 s0, s0", "bx lr")
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    pub use libm::sqrtf as single;
+
+    // (`vfp2`, a compiler's name for the double-precision unit that Cortex-M7 may have.)
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf", target_feature = "vfp2"))]
+    #[unsafe(naked)]
+    pub extern "C" fn double(x: f64) -> f64 {
+        core::arch::naked_asm!(".fpu fpv5-d16", "vsqrt.f64 d0, d0", "bx lr")
+    }
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf", target_feature = "vfp2")))]
+    pub use libm::sqrt as double;
+}
+
+real!(f32, root::single, 1e-4, 0x800, 0x7F80_0000);
+real!(f64, root::double, 1e-6, 0x400_0000, 0x7FF0_0000_0000_0000);

@@ -93,13 +93,7 @@ pub(super) fn init<T: Real>(
     // SAFETY: aligned, and the header: long enough for header and block, and used for nothing else.
     unsafe {
         let block = handle.cast::<u8>().add(HEADER);
-        match dimension {
-            2 => internal::initialize::<T, 2>(block, &layout),
-            3 => internal::initialize::<T, 3>(block, &layout),
-            4 => internal::initialize::<T, 4>(block, &layout),
-            5 => internal::initialize::<T, 5>(block, &layout),
-            _ => internal::initialize::<T, 6>(block, &layout),
-        }
+        internal::initialize(block, &layout);
         handle.write(qdist_solver { magic: MAGIC, scalar, dimension: dimension as u16, max_vertices, max_facets });
     }
     solver.put(handle)

@@ -91,42 +91,30 @@ pub fn place<T: Real, const N: usize>(
     // writes every element before `open` reads it.
     unsafe {
         let base = memory.as_mut_ptr().cast::<u8>();
-        initialize::<T, N>(base, &layout);
+        initialize(base, &layout);
         Ok(open(base, &layout))
     }
 }
 
-/// Writes every element of the block once.
+/// Writes every byte of the block once. Vertices, facets and queue are numbers only, and what is in them is written before it is read: zeros will do, in every
+/// dimension.
 ///
 /// # Safety
-/// `base` is valid for writes of `layout.bytes` bytes and aligned to [`Layout::ALIGN`].
+/// `base` is valid for writes of `layout.bytes` bytes.
 #[doc(hidden)]
-pub unsafe fn initialize<T: Real, const N: usize>(base: *mut u8, layout: &Layout) {
-    const { assert!(align_of::<Facet<T, N>>() <= Layout::ALIGN && align_of::<Vertex<T, N>>() <= Layout::ALIGN) };
-    // SAFETY: the offsets and counts are those of the layout.
-    unsafe {
-        let vertices = base.cast::<Vertex<T, N>>();
-        for i in 0..layout.vertices {
-            vertices.add(i).write(Vertex::empty());
-        }
-        let facets = base.add(layout.facets_at).cast::<Facet<T, N>>();
-        for i in 0..layout.facets {
-            facets.add(i).write(Facet::empty());
-        }
-        let queue = base.add(layout.queue_at).cast::<Entry<T>>();
-        for i in 0..layout.facets {
-            queue.add(i).write(Entry::EMPTY);
-        }
-    }
+pub unsafe fn initialize(base: *mut u8, layout: &Layout) {
+    // SAFETY: the caller's promise.
+    unsafe { base.write_bytes(0, layout.bytes()) }
 }
 
 /// A solver over a block that [`initialize`] has written.
 ///
 /// # Safety
-/// The block was initialised for the same T, N and layout, and is not used otherwise for the life `'w`.
+/// The block was initialised for the same layout, and is not used otherwise for the life `'w`.
 #[doc(hidden)]
 pub unsafe fn open<'w, T: Real, const N: usize>(base: *mut u8, layout: &Layout) -> Solver<'w, T, N> {
     use core::slice::from_raw_parts_mut;
+    const { assert!(align_of::<Facet<T, N>>() <= Layout::ALIGN && align_of::<Vertex<T, N>>() <= Layout::ALIGN) };
     // SAFETY: three disjoint parts of an initialised block.
     unsafe {
         let vertices = from_raw_parts_mut(base.cast(), layout.vertices);
