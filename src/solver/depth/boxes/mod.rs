@@ -34,7 +34,7 @@ use super::body::Body;
 use super::closed::{Found, is_enough};
 use super::fine::Level;
 use crate::bounds::Bracket;
-use crate::math::{TwoWords, Vector, norm, unit};
+use crate::math::{TwoWords, Vector, magnitude, norm, unit};
 use crate::query::Options;
 use crate::query::answer::Outcome;
 use crate::scalar::Real;
@@ -147,15 +147,20 @@ impl<T: Real> Zonotope<T> {
                 }
                 Normal::Known(n, blur) => (n, blur),
             };
-            let n = if self.center().dot(&n.high) > T::zero() { -n } else { n };
-            let coordinates = self.farthest(&n);
-            let point = self.place(&coordinates);
-            lower = lower.at_most(Level::new(n, [T::zero(); 2], self.error(&n.high, &blur)).lower(&[point]));
-            // (Along the rounded vector, mostly the same point is farthest.)
-            let rounded = unit(&n.high);
-            let height = self.not_above(&rounded, T::zero(), Some((&coordinates, &point)));
-            if height < upper {
-                (upper, normal) = (height, rounded);
+            // Of n and -n the one against c is lower. (Both, where one word does not tell.)
+            let along = self.center().dot(&n.high);
+            let doubtful = magnitude(along) <= self.error_in_one_word();
+            let toward = if along > T::zero() { -n } else { n };
+            for n in [Some(toward), doubtful.then(|| -toward)].into_iter().flatten() {
+                let coordinates = self.farthest(&n);
+                let point = self.place(&coordinates);
+                lower = lower.at_most(Level::new(n, [T::zero(); 2], self.error(&n.high, &blur)).lower(&[point]));
+                // (Along the rounded vector, mostly the same point is farthest.)
+                let rounded = unit(&n.high);
+                let height = self.not_above(&rounded, T::zero(), Some((&coordinates, &point)));
+                if height < upper {
+                    (upper, normal) = (height, rounded);
+                }
             }
         }
         if upper >= T::HUGE {
