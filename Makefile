@@ -20,7 +20,7 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack instructions figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack instructions embedded lib-arm figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
 all: lib
 
 lib:
@@ -131,6 +131,16 @@ instructions: lib
 	$(need)
 	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/instructions.c $(lib) -lm -o $(out)/instructions
 	@scripts/instructions.sh $(out)/instructions $(if $(WRITE),write)
+
+# For Cortex-M: programs, run in QEMU; WRITE=1 renews the golden numbers. And a library of chosen functions.
+embedded: OUT = out/embedded
+embedded:
+	$(need)
+	@CARGO_TARGET_DIR=$(abspath $(target)) scripts/embedded.py $(OUT) $(if $(WRITE),--write)
+
+lib-arm:
+	$(need)
+	@CARGO_TARGET_DIR=$(abspath $(target)) scripts/embedded.py --lib $(CPU) --only "$(ONLY)"
 
 figures: lib lib-mesh
 	@$(CC) -std=c99 -O2 $(WARNINGS) -Iinclude ffi-tests/figures.c $(lib) -lm -o $(out)/figures

@@ -46,6 +46,7 @@ run c make --no-print-directory test-c
 run freestanding make --no-print-directory freestanding
 run purity make --no-print-directory purity
 run stack make --no-print-directory stack
+run embedded make --no-print-directory embedded OUT="$log/embedded"
 run instructions make --no-print-directory instructions
 run figures python3 benches/report/figures.py
 run compare make --no-print-directory compare CASES="$(echo tests/data/*.txt)" OUT="$log/compare" CHECK=--check

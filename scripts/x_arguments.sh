@@ -37,6 +37,9 @@ refused 'no file nofile' compare CASES="tests/data/std_hull8.txt nofile" "OUT=$f
 refused 'names no file' compare CASES=
 refused 'no program `nosuchcc`' lib CC=nosuchcc
 refused 'no program' lib CARGO=
+refused 'CPU=cortex-m4' lib-arm
+refused 'cortex-m7, not' lib-arm CPU=m3
+refused 'without qdist_' lib-arm CPU=cortex-m4 'ONLY=depth3_f32; ls'
 refused 'is empty' compare "CASES=$folder/empty.txt"
 refused 'does not know CASE' compare CASE=tests/data/std_hull8.txt
 refused 'OUT' compare OUT=

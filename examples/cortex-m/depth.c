@@ -80,7 +80,12 @@ int main(void) {
     qdist_solver *solver;
     qdist_body_f32 a, b;
     qdist_depth_f32 depth;
+    qdist_options_f32 options;
 
+    if (qdist_options_default_f32(&options) != QDIST_OK) return measure_refused("qdist_options_default_f32");
+#if SCENE == CALLBACK_BOX
+    options.absolute = 2e-5f; /* a function of your own tells points in one word, and no more should be asked of them */
+#endif
     if (qdist_solver_init_f32(memory, sizeof memory, 3, VERTICES, FACETS, &solver) != QDIST_OK) return measure_refused("qdist_solver_init_f32");
     if (make(&a, &b) != QDIST_OK) return measure_refused("a body");
     for (int i = 0; i < POSES; ++i) {
@@ -88,7 +93,7 @@ int main(void) {
         for (int k = 0; k < 3; ++k) b.translation[k] = 0.75f * dice(); /* most of them overlap */
         depth.struct_size = sizeof depth;
         measure_begin();
-        const qdist_status status = qdist_depth3_f32(solver, &a, &b, 0, &depth);
+        const qdist_status status = qdist_depth3_f32(solver, &a, &b, &options, &depth);
         measure_end();
         if (status != QDIST_OK) return measure_refused("qdist_depth3_f32");
         measure_answer(depth.outcome == QDIST_CONVERGED || depth.outcome == QDIST_SEPARATED);

@@ -8,7 +8,7 @@ static uint64_t memory[WORDS(6, VERTICES, FACETS)];
 static Q(primitive) primitives[FINGERS];
 static Q(contact) contacts[FINGERS];
 static Q(force_memory) known;
-static Q(tracker) tracker; /* zeros: nothing is known */
+static Q(tracker) tracker;
 static Q(result) result;
 
 int main(void) {
@@ -25,6 +25,7 @@ int main(void) {
     if (Q(solver_init)(memory, sizeof memory, 6, VERTICES, FACETS, &solver) != QDIST_OK) return measure_refused("qdist_solver_init");
     if (Q(options_default)(&options) != QDIST_OK) return measure_refused("qdist_options_default");
     if (Q(set_wrenches)(&set, &wrenches) != QDIST_OK) return measure_refused("qdist_set_wrenches");
+    if (Q(tracker_init)(&tracker, 6) != QDIST_OK) return measure_refused("qdist_tracker_init");
     touch(contacts, QDIST_SOFT, 0);
     for (int tick = 0; tick < TICKS; ++tick) {
         uint32_t which;

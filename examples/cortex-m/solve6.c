@@ -36,10 +36,9 @@ int main(void) {
             for (int k = 0; k < 6; ++k) points[j][k] = (real)dice();
         result.struct_size = sizeof result;
 #ifdef IN_SPAN
-        static const real basis[4][6] = {{1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 1, 0, 0}};
         for (int j = 0; j < POINTS; ++j) points[j][4] = points[j][5] = 0;
         measure_begin();
-        const qdist_status status = Q(solve_in_span6)(solver, &set, 0, basis[0], 4, &options, &result);
+        const qdist_status status = Q(solve_in_span)(solver, &set, 0, &options, &result);
 #else
         measure_begin();
         const qdist_status status = Q(solve6)(solver, &set, 0, &options, &result);
