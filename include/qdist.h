@@ -376,8 +376,8 @@ typedef int32_t (*qdist_mirrored)(void *user, uint32_t signs);
 /// What answers for a body without end. Not for functions of your own.
 typedef qdist_status (*qdist_unbounded)(const void *a, const void *b, const void *options, void *result);
 
-/// How depth is found with a body of revolution: what the body functions of the library's own shapes put into a body. NULL elsewhere.
-typedef void (*qdist_turning)(void);
+/// How depth is found with a body in space: what the functions that make bodies put there. The code of a plan is linked where one of them names it.
+typedef void (*qdist_route)(void);
 
 /* =========================================================== SOLVERS ===========================================================
  *
@@ -477,9 +477,9 @@ typedef struct {
     uint32_t symmetry;
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     qdist_unbounded unbounded;
-    /// How depth is found with cylinders, cones and ellipsoids, whose body functions set it: arcs of minimisers around the axis, a closed form. NULL
-    /// for your own sets.
-    qdist_turning turning;
+    /// How depth is found, as the function that has made the body says: boxes by their axes, cylinders and cones by arcs of minimisers around theirs, your
+    /// own sets by expansion. A program does without the plans of shapes that it does not make.
+    qdist_route route;
     /// NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
     /// shapes, points and hulls put it here. Called with set.user.
     qdist_precise_f64 precise;
@@ -1004,8 +1004,8 @@ QDIST_API qdist_status qdist_options_default_f64(qdist_options_f64 *options);
 /// Penetration depth or distance of two bodies in space, with witness points. A and B may be the same body. The solver is
 /// one of dimension 3. Swapping A and B turns the normal and swaps the points.
 ///
-/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; CALLBACK (a or b); NONFINITE
-/// (also: the difference of the bodies is too large).
+/// Status: those of a solver, of a body (a, b), which a half space has as qdist_body_half_space, and of options; ARGUMENT (a or b: `route` is NULL, so that no
+/// function has made the body); CALLBACK (a or b); NONFINITE (also: the difference of the bodies is too large).
 QDIST_API
 qdist_status qdist_depth3_f64(qdist_solver *solver,
                               const qdist_body_f64 *a,
@@ -1345,7 +1345,7 @@ typedef struct {
     float errors[3];
     uint32_t symmetry;
     qdist_unbounded unbounded;
-    qdist_turning turning;
+    qdist_route route;
     qdist_precise_f32 precise;
 } qdist_body_f32;
 

@@ -239,3 +239,49 @@ fn brackets_are_true_and_as_narrow_as_words_allow() {
         assert!(apart > 500 && overlapping > 500);
     }
 }
+
+/// Two flat boxes in parallel planes that are a roundoff of their places apart: which side the origin is on, one word does not tell, and it was taken for inside.
+#[test]
+fn plates_in_planes_next_to_one_another() {
+    let turn = [
+        [-0.693680585378445, -0.7190430173536524, -0.04224197751020772],
+        [0.04216028990159109, -0.09907913186424497, 0.9941860165906788],
+        [-0.7190478116401103, 0.6878666039458396, 0.09904433225372235],
+    ];
+    let half = [[0.0, 989696.7681541835, 1992501.1475560155], [0.0, 2050085.108558843, 682728.3203590999]];
+    let place = [[0.0; 3], [-112893.97603529698, 2657016.052444358, 264701.34995885845]];
+    let pair = Pair { half, turn: [turn, turn], place };
+    assert!(check(&pair, &ask::<f64>(&pair, &Options::default())) < 0.0);
+    let mut dice = Dice::new(5);
+    for _ in 0..300 {
+        let mut pair = random(&mut dice);
+        (pair.turn[1], pair.half[0][0], pair.half[1][0]) = (pair.turn[0], 0.0, 0.0);
+        // Along the plates, so far that they stay on one another.
+        let along = [0, 1, 2].map(|i| pair.turn[0][i][1] * pair.half[0][1] * dice.signed());
+        for i in 0..3 {
+            pair.place[1][i] = pair.place[0][i] + along[i] + dice.pick(&[0.0, 1e-15, 1e-9]) * along[0];
+        }
+        check(&pair, &ask::<f64>(&pair, &Options::default()));
+        let pair = pair.rounded::<f32>();
+        check(&pair, &ask::<f32>(&pair, &Options::default()));
+    }
+}
+
+/// An answer of boxes does not hang on memory, limits or guesses; thresholds are decided.
+#[test]
+fn what_is_asked_beside_the_depth() {
+    let mut dice = Dice::new(6);
+    for _ in 0..500 {
+        let pair = random(&mut dice);
+        let truth = check(&pair, &ask::<f64>(&pair, &Options::default()));
+        let once = Options { max_iterations: Some(1), guess: Some(Vector3::x()), ..Options::default() };
+        assert_eq!(ask::<f64>(&pair, &once), ask::<f64>(&pair, &Options::default()));
+        for threshold in [0.0, truth + 0.1 * pair.size(), truth - 0.1 * pair.size()] {
+            let d = ask::<f64>(&pair, &Options { threshold: Some(threshold), ..Options::default() });
+            check(&pair, &d);
+            if (truth - threshold).abs() > 1e-12 * pair.size() {
+                assert_eq!(d.outcome, if truth > threshold { Outcome::Above } else { Outcome::Below }, "{pair:?}");
+            }
+        }
+    }
+}

@@ -74,15 +74,16 @@ struct Axes<T: Real> {
     lower: [T; FACES.len()],
     /// The least of all: d of the cores is not below.
     least: T,
-    /// The axis with the least h(n) / |n|, as a unit vector, and this height.
+    /// The axis with the least h(n) / |n|, as a unit vector; this height, and what it is certainly not above.
     normal: Vector<T, 3>,
     height: T,
+    most: T,
 }
 
 impl<T: Real> Zonotope<T> {
     fn depth(&self, options: &Options<'_, T, 3>) -> Found<T, 3> {
         let axes = self.axes();
-        let most = axes.height + self.error_in_one_word();
+        let most = axes.most;
         if axes.least > T::zero() {
             let bracket = self.with_balls(&Bracket { lower: axes.least, upper: most });
             if is_enough(&bracket, options) {
@@ -91,7 +92,7 @@ impl<T: Real> Zonotope<T> {
         } else if most < T::zero() {
             return self.apart(axes.normal, most, options);
         }
-        let (core, normal) = self.in_two_words(&axes, most);
+        let (core, normal) = self.in_two_words(&axes);
         if core.lower > T::zero() {
             self.overlapping(self.with_balls(&core), normal, core.upper, options)
         } else {
@@ -104,8 +105,8 @@ impl<T: Real> Zonotope<T> {
         let error = self.error_in_one_word();
         let center = self.center();
         let (lower, normal) = ([-T::HUGE; FACES.len()], Vector::zeros());
-        let mut axes = Axes { lower, least: T::HUGE, normal, height: T::HUGE };
-        let (mut best, mut moved) = (T::HUGE, T::zero());
+        let mut axes = Axes { lower, least: T::HUGE, normal, height: T::HUGE, most: T::HUGE };
+        let mut moved = T::zero();
         for (lower, &(i, j)) in axes.lower.iter_mut().zip(&FACES) {
             let (Some(x), Some(y)) = (self.along.get(i), self.along.get(j)) else { continue };
             let n = x.cross(y);
@@ -119,10 +120,9 @@ impl<T: Real> Zonotope<T> {
             axes.least = axes.least.at_most(*lower);
             // (What is short is known badly.)
             let inverse = T::one() / length;
-            let doubtful = (height + error) * inverse;
-            if doubtful < best {
-                best = doubtful;
-                (axes.normal, axes.height) = (n * (inverse * toward), height * inverse);
+            let most = (height + error) * inverse;
+            if most < axes.most {
+                (axes.normal, axes.height, axes.most) = (n * (inverse * toward), height * inverse, most);
             }
         }
         axes.least -= moved;
@@ -131,11 +131,11 @@ impl<T: Real> Zonotope<T> {
 
     /// The bracket of the cores, should they overlap, and the direction that proves its upper end: in two words, along the axes that one word leaves in question.
     #[inline(never)]
-    fn in_two_words(&self, axes: &Axes<T>, most: T) -> (Bracket<T>, Vector<T, 3>) {
+    fn in_two_words(&self, axes: &Axes<T>) -> (Bracket<T>, Vector<T, 3>) {
         let (mut lower, mut moved) = (T::HUGE, T::zero());
         let (mut upper, mut normal) = (T::HUGE, axes.normal);
         for (&known, &(i, j)) in axes.lower.iter().zip(&FACES) {
-            if known > most {
+            if known > axes.most {
                 lower = lower.at_most(known);
                 continue;
             }
