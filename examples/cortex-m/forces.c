@@ -1,4 +1,5 @@
-/* What each fingertip must press, every tick: three soft fingertips carry a load while the arm accelerates, with what is known from the tick before. */
+/* What each fingertip must press, every tick: three soft fingertips carry a load while the arm accelerates, which changes by a thousandth from tick to tick; what is known
+ * from the tick before is used. */
 #include "fingertips.h"
 
 static Q(primitive) primitives[FINGERS];
@@ -14,7 +15,7 @@ int main(void) {
     touch(contacts, QDIST_SOFT, (real)0.005);
     if (Q(primitives)(contacts, FINGERS, &FRAME, 0, 0, primitives, &which) != QDIST_OK) return measure_refused("qdist_primitives");
     for (int tick = 0; tick < POSES; ++tick) {
-        for (int k = 0; k < 6; ++k) load[k] += (real)0.01 * (real)dice();
+        for (int k = 0; k < 6; ++k) load[k] += (real)2e-4 * (real)dice();
         result.struct_size = sizeof result;
         measure_begin();
         const qdist_status status = Q(contact_forces)(&wrenches, &known, load, 0, shares, &result);

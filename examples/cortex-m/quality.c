@@ -4,7 +4,7 @@
 #ifdef DOUBLE
 enum { VERTICES = 64, FACETS = 384 };
 #else
-enum { VERTICES = 64, FACETS = 256 };
+enum { VERTICES = 64, FACETS = 240 };
 #endif
 static uint64_t memory[WORDS(6, VERTICES, FACETS)];
 static Q(primitive) primitives[FINGERS];

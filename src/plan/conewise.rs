@@ -336,7 +336,7 @@ fn touch<T: Real, const N: usize>(query: &mut Query<'_, T, N>, found: &mut Cones
     if matches!(found.stop, Stop::Met | Stop::Rounding)
         && let Some(target) = query.mapping(&query.best.direction)
     {
-        let (ray, shot) = shoot(query, &target, None, T::of(1e-9).at_least(query.options.relative), |_| T::HUGE)?;
+        let (ray, shot) = shoot(query, &target, None, T::of(1e-9).at_least(query.options.relative), &|_| T::HUGE)?;
         if matches!(shot, Shot::Hit) && ray.reach().is_some() {
             found.witness = ray.simplex();
         }

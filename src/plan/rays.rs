@@ -169,8 +169,8 @@ impl<T: Real, const N: usize> RaySearch<T, N> {
     fn shoot_all(&mut self, query: &mut Query<'_, T, N>) -> Result<Shot, Failure> {
         while let Some(target) = next_target(query, &mut self.index, self.count)? {
             let (gap, reserve) = (self.gap, self.reserve);
-            let level = |query: &Query<'_, T, N>| query.level(gap, reserve + query.reserve(4));
-            let (ray, shot) = shoot(query, &target, self.last.take(), T::zero(), level)?;
+            let level = move |query: &Query<'_, T, N>| query.level(gap, reserve + query.reserve(4));
+            let (ray, shot) = shoot(query, &target, self.last.take(), T::zero(), &level)?;
             if !matches!(shot, Shot::Hit) {
                 return Ok(shot);
             }
@@ -331,7 +331,7 @@ fn ball_inside<T: Real, const N: usize>(
             _ if i == index => T::one(),
             _ => T::zero(),
         });
-        let (ray, shot) = shoot_from(query, center, &target, T::of(0.1), |_| enough)?;
+        let (ray, shot) = shoot_from(query, center, &target, T::of(0.1), &|_| enough)?;
         if matches!(shot, Shot::Left) {
             return Ok(Some(Inside { radius: T::zero(), shortest: T::zero() }));
         }

@@ -15,6 +15,9 @@ const STEPS: usize = 512;
 /// before that takes a program of its own.
 const SPECK: f64 = 1e-3;
 
+/// How far a ray is of interest. (By reference: one copy of the loop for all.)
+pub(crate) type Level<'l, T, const N: usize> = dyn Fn(&Query<'_, T, N>) -> T + 'l;
+
 /// Where a shot ended.
 pub(crate) enum Shot {
     /// The crossing is known as well as asked for, or as arithmetic allows.
@@ -34,7 +37,7 @@ pub(crate) fn shoot<T: Real, const N: usize>(
     target: &Vector<T, N>,
     near: Option<Ray<T, N>>,
     accuracy: T,
-    level: impl Fn(&Query<'_, T, N>) -> T,
+    level: &Level<'_, T, N>,
 ) -> Result<(Ray<T, N>, Shot), Failure> {
     let ray = match near.and_then(|ray| ray.aimed(target)) {
         Some(ray) => ray,
@@ -49,7 +52,7 @@ pub(crate) fn shoot_from<T: Real, const N: usize>(
     from: &Vector<T, N>,
     target: &Vector<T, N>,
     accuracy: T,
-    level: impl Fn(&Query<'_, T, N>) -> T,
+    level: &Level<'_, T, N>,
 ) -> Result<(Ray<T, N>, Shot), Failure> {
     let ray = Ray::begin(from, target, query.size() * T::of(SPECK));
     shoot_on(query, ray, accuracy, level)
@@ -59,12 +62,12 @@ fn shoot_on<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     mut ray: Ray<T, N>,
     accuracy: T,
-    level: impl Fn(&Query<'_, T, N>) -> T,
+    level: &Level<'_, T, N>,
 ) -> Result<(Ray<T, N>, Shot), Failure> {
-    let mut shot = follow(query, &mut ray, accuracy, &level)?;
+    let mut shot = follow(query, &mut ray, accuracy, level)?;
     if matches!(shot, Shot::Hit) && ray.reach().is_none() {
         ray.reach_out();
-        shot = follow(query, &mut ray, accuracy, &level)?;
+        shot = follow(query, &mut ray, accuracy, level)?;
     }
     Ok((ray, shot))
 }
@@ -83,7 +86,7 @@ fn follow<T: Real, const N: usize>(
     query: &mut Query<'_, T, N>,
     ray: &mut Ray<T, N>,
     accuracy: T,
-    level: &impl Fn(&Query<'_, T, N>) -> T,
+    level: &Level<'_, T, N>,
 ) -> Result<Shot, Failure> {
     let mut polished = false;
     for _ in 0..STEPS {
@@ -151,7 +154,7 @@ pub(crate) fn descend<T: Real, const N: usize>(
     for _ in 0..STEPS {
         let Some(target) = query.mapping(&direction) else { return Ok(None) };
         let before = query.ratio();
-        let (ray, shot) = shoot(query, &target, last.take(), T::of(1e-6), |_| T::HUGE)?;
+        let (ray, shot) = shoot(query, &target, last.take(), T::of(1e-6), &|_| T::HUGE)?;
         if let Shot::Stopped(stop) = shot {
             return Ok(Some(stop));
         }
