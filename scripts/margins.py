@@ -135,6 +135,18 @@ half spaces: a point in two words | solver/depth/half_space/deepest.rs | @a.shap
 half spaces: opposite for certain | solver/depth/half_space/plane.rs | let upper = if @told.is_some()@ | true
 half spaces: not opposite for certain | solver/depth/half_space/plane.rs | across > @rounding@) | T::zero()
 
+boxes: one word, lower | solver/depth/boxes/mod.rs | *lower = (height - @error@) | T::zero()
+boxes: one word, lower, length | solver/depth/boxes/mod.rs | (length + @T::count(16) * T::ROUNDOFF@); | T::zero()
+boxes: one word, upper | solver/depth/boxes/mod.rs | let most = (height + @error@) * inverse | T::zero()
+boxes: parallel edges | solver/depth/boxes/mod.rs | moved = @error * T::count(3)@; | T::zero()
+boxes: both senses of an axis | solver/depth/boxes/mod.rs | let doubtful = @magnitude(along) <= self.error_in_one_word()@; | false
+boxes: lower of two words | solver/depth/boxes/mod.rs | Level::new(n, [T::zero(); 2], @self.error(&n.high, &blur)@) | T::zero()
+boxes: upper of two words | solver/depth/boxes/mod.rs | [ball, T::zero()], @self.error(n, &Vector::zeros())@ + | T::zero()
+boxes: nearest point | solver/depth/boxes/mod.rs | let error = @along.at_most(whole)@ + | T::zero()
+boxes: nearest point, rounding | solver/depth/boxes/mod.rs | -(distance + error + @(distance.abs() + slip.abs()) * (T::count(4) * T::ROUNDOFF)@) | T::zero()
+boxes: edges that are nearly across | solver/depth/boxes/zonotope.rs | if @magnitude(height) <= T::count(16) * T::ROUNDOFF@ { | false
+boxes: edges that are nearly parallel | solver/depth/boxes/zonotope.rs | * @(T::of(0.0625) / length)@; | T::zero()
+
 fine: lower, error of heights | solver/depth/fine/level.rs | least.at_most(distance - @error@) | T::zero()
 fine: upper, error of heights | solver/depth/fine/level.rs | distance + @error@ | T::zero()
 fine: points in two words | solver/depth/fine/level.rs | (distance, @self.error@ + | T::zero()
@@ -189,7 +201,7 @@ HIDDEN = {
 }
 
 # Of the test program `core`, and of the library's own tests, where a query has room for what a part of it loses.
-TESTS = ["exact_margins::", "depth_margins::", "far_points::", "half_spaces::"]
+TESTS = ["boxes::", "exact_margins::", "depth_margins::", "far_points::", "half_spaces::"]
 OWN_TESTS = ["solver::depth::pair::", "solver::depth::sectors::"]
 SWITCH = """
 /// Is this margin taken away?

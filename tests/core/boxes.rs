@@ -212,6 +212,8 @@ fn brackets_of_boxes<T: Real>(cases: usize) -> [usize; 2] {
         let pair = random(&mut dice).rounded::<T>();
         let d = ask::<T>(&pair, &Options::default());
         let truth = check(&pair, &d);
+        // (What is never met leaves the bracket as narrow as it was found.)
+        check(&pair, &ask::<T>(&pair, &Options { relative: T::zero(), absolute: T::TINY, ..Options::default() }));
         ends[usize::from(truth > 0.0)] += 1;
         let width = (d.upper - d.lower).to_f64();
         // What one word of the normal and of the result leaves.
