@@ -198,7 +198,7 @@ record: OUT = out/record
 record:
 	$(need)
 	@echo "writing every answer to the last bit; the records go to $(OUT)"
-	@$(CARGO) run --quiet --release --locked --package qdist-benches --bin record -- $(if $(PART),--part $(PART)) "$(abspath $(OUT))"
+	@$(CARGO) run --quiet --release --locked --package qdist-benches --example record -- $(if $(PART),--part $(PART)) "$(abspath $(OUT))"
 
 record-compare:
 	$(need)
