@@ -9,6 +9,7 @@ from pathlib import Path
 import markdown
 
 from report import machine, tables
+from report.job import is_quick
 
 HEAD = """# qdist: the report
 
@@ -16,6 +17,8 @@ HEAD = """# qdist: the report
 that costs, beside the libraries that people know, and where it breaks or loses. Every number on it was measured by one command, `./x report`; the tables behind the
 pictures are CSV files beside it.
 """
+
+QUICK = "*Quick: few and small runs. Figures are rough.*"
 
 PAGE = """<!doctype html>
 <html lang="en">
@@ -50,13 +53,16 @@ nav ul {{ columns: 2; padding-left: 1.2em; }}
 """
 
 
-def write(out, parts, quick):
+def write(out, parts):
     out = Path(out)
-    told = [(out / part / "part.md") for part in parts]
-    texts = [file.read_text() for file in told if file.exists()]
-    note = "\n*This is the quick one: few and small runs. Its figures are rough.*\n" if quick else ""
+    folders = [out / part for part in parts if (out / part / "part.md").exists()]
+    texts = [(folder / "part.md").read_text() for folder in folders]
     heads = [re.search(r"^## (.*)$", text, re.M).group(1) for text in texts]
-    contents = "\n".join(f"* [{head}](#{anchor(head)})" for head in heads)
+    quick = [is_quick(folder) for folder in folders]
+    note = f"\n{QUICK}\n" if any(quick) and all(quick) else ""
+    if any(quick) and not note:
+        texts = [re.sub(r"^(## .*)$", rf"\1\n\n{QUICK}", text, count=1, flags=re.M) if rough else text for text, rough in zip(texts, quick)]
+    contents = "\n".join(f"* [{head}](#{anchor(head)})" + (", quick" if rough else "") for head, rough in zip(heads, quick))
     where = tables.table(["", "measured with"], machine.rows(), ["---", "---"])
     text = "\n".join([HEAD + note, contents, "", *texts, "## Where this was measured\n", where])
     (out / "report.md").write_text(text)
