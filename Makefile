@@ -20,22 +20,22 @@ version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Sees to it that what the target needs is here.
 need = @./x need $@ && mkdir -p $(out)
 
-.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack instructions embedded lib-arm figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick record record-compare clean
+.PHONY: all lib lib-std lib-mesh header header-check margins demo demo-mesh test test-c freestanding purity stack instructions embedded lib-arm figures compare bench-dq bench-grasp bench-pdg bench-depth report report-quick asked record record-compare clean
 all: lib
 
 lib:
 	$(need)
-	@echo "building $(lib) (no std, release; takes about a minute)"
+	@echo "$(lib): no std, release; built where a source is newer, in about a minute"
 	@$(capi) --release --features grasp,panic-handler && cp $(target)/release/libqdist_capi.a $(lib)
 
 lib-std:
 	$(need)
-	@echo "building $(lib_std) (std, debug)"
+	@echo "$(lib_std): std, debug; built where a source is newer"
 	@$(capi) --features c-allocator && cp $(target)/debug/libqdist_capi.a $(lib_std)
 
 lib-mesh:
 	$(need)
-	@echo "building $(lib_mesh) (std, meshes, release; takes a minute or two)"
+	@echo "$(lib_mesh): std, meshes, release; built where a source is newer, in a minute or two"
 	@$(capi) --profile hosted --features c-allocator && cp $(target)/hosted/libqdist_capi.a $(lib_mesh)
 
 header:
@@ -191,24 +191,29 @@ $(venv)/.done: benches/report/requirements.txt
 report_for = cd benches && CARGO_TARGET_DIR=$(abspath $(target)) $(venv)/bin/python -m report $(abspath $(OUT))
 
 report: OUT = out/report
-report report-quick: lib $(venv)/.done
-	$(need)
-	@echo "measuring; the page goes to $(OUT)"
-	@$(report_for) $(if $(filter report-quick,$@)$(QUICK),--quick) $(if $(PART),--part $(PART)) $(if $(COPY),--copy)
-
+report: takes = $(if $(PART),the whole report about 45 minutes,about 45 minutes)
 report-quick: OUT = out/report-quick
+report-quick: takes = about 5 minutes
+report report-quick: asked lib $(venv)/.done
+	$(need)
+	@echo "measuring ($(takes), and some minutes more to build it first); the page goes to $(abspath $(OUT))"
+	@$(report_for) $(if $(filter report-quick,$@)$(QUICK),--quick) $(if $(PART),--part $(PART)) $(if $(AGAIN),--again) $(if $(COPY),--copy)
 
 bench-depth: OUT = out/depth
-bench-depth: lib $(venv)/.done
+bench-depth: asked lib $(venv)/.done
 	$(need)
-	@echo "measuring depth of bodies; results go to $(OUT)"
-	@$(report_for) $(if $(QUICK),--quick) --part depth --data-only --flat
+	@echo "measuring depth of bodies (about $(if $(QUICK),a minute,14 minutes)); results go to $(abspath $(OUT))"
+	@$(report_for) $(if $(QUICK),--quick) --part depth --data-only --flat $(if $(AGAIN),--again)
+
+# Looks at what these are told before anything is built.
+asked:
+	@./x need $(firstword $(filter report report-quick bench-depth,$(MAKECMDGOALS)) report)
 
 record: OUT = out/record
 record:
 	$(need)
 	@echo "writing every answer to the last bit; the records go to $(OUT)"
-	@$(CARGO) run --quiet --release --locked --package qdist-benches --bin record -- $(if $(PART),--part $(PART)) "$(abspath $(OUT))"
+	@$(CARGO) run --quiet --release --locked --package qdist-benches --example record -- $(if $(PART),--part $(PART)) "$(abspath $(OUT))"
 
 record-compare:
 	$(need)

@@ -52,6 +52,8 @@ refused 'does not know QUIK' bench-pdg QUIK=1
 refused 'PART' record PART=convexes
 refused 'PART' report PART=depths
 refused 'COPY' report COPY=yes
+refused 'AGAIN' bench-depth AGAIN=yes
+refused 'does not know AGAIN' bench-dq AGAIN=1
 refused 'A=dir B=dir' record-compare
 refused 'A=dir B=dir' record-compare "A=$folder"
 refused 'no folder' record-compare "A=$folder" "B=$folder/nothing"
@@ -64,6 +66,11 @@ refused 'CARGO_TARGET_DIR' lib "CARGO_TARGET_DIR=$folder/it's"
 export CASES=nofile
 refused 'no file nofile' compare
 unset CASES
+export PART=depths
+refused 'PART' need report
+export PART=depth OUT=/proc/out
+refused 'no folder' need report
+unset PART OUT
 for name in 'a b' "it's" 'a"b' 'a,b' 'a$b' 'a`b' 'a\b' 'a;b' 'a#b'; do
     refused 'OUT' bench-dq "OUT=$folder/$name"
     export CARGO_TARGET_DIR="$folder/$name"

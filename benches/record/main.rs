@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! ./x record OUT=before            ... change the code ...            ./x record OUT=after && ./x record-compare A=before B=after
-//! cargo run --release -p qdist-benches --bin record -- OUT [--part convex|grasps|meshes]
+//! cargo run --release -p qdist-benches --example record -- OUT [--part convex|grasps|meshes]
 //! ```
 //!
 //! Writes `OUT/convex.txt`, `OUT/grasps.txt` and `OUT/meshes.txt`, a line an answer: what was asked, the scalar, how it ended, and the bits of the

@@ -37,7 +37,7 @@ def build(job, name="depth"):
 def build_parry(job):
     """Builds `depth_parry` and returns its path; None where that cannot be (crates.io is out of reach)."""
     package, target = ROOT / "benches/report/parry", job.built / "parry"
-    job.say("building parry's program")
+    job.say("building parry's program (a minute the first time)")
     try:
         call([os.environ.get("CARGO", "cargo"), "build", "--quiet", "--release", "--locked"], cwd=package, env={**os.environ, "CARGO_TARGET_DIR": str(target)})
     except subprocess.CalledProcessError:

@@ -8,14 +8,20 @@ from pathlib import Path
 
 import markdown
 
-from report import machine, tables
+from report import machine, tables, words
+from report.job import is_quick
 
 HEAD = """# qdist: the report
 
 *How deep is this point, body or grasp inside that set, and how sure are we?* Every answer of qdist is a bracket: the truth is between its ends. This page shows what
-that costs, beside the libraries that people know, and where it breaks or loses. Every number on it was measured by one command, `./x report`; the tables behind the
-pictures are CSV files beside it.
+that costs, beside the libraries that people know, and where it breaks or loses. Every number on it was measured by one command, `./x report`, but for those that the last
+part quotes from two papers, which says so. {files} What its words mean is told [first](#words).
 """
+# Where the tables are that the page and its pictures are made of.
+FILES = "The tables behind the pictures are CSV files in a folder a part."
+COPIED = "The tables behind the pictures are CSV files beside it; what is drawn of single runs (energy over time, a query that is cut off) is in the folder that the command makes."
+
+QUICK = "*Quick: few and small runs. Figures are rough.*"
 
 PAGE = """<!doctype html>
 <html lang="en">
@@ -34,6 +40,8 @@ figure svg, figure img {{ max-width: 100%; min-width: 42rem; height: auto; }}
 figure, .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-size: .92em; font-variant-numeric: tabular-nums; }}
 th, td {{ padding: .25em .7em; border-bottom: 1px solid #d8dee4; vertical-align: bottom; white-space: nowrap; }}
+#words + .wide td {{ vertical-align: top; white-space: normal; }}
+#words + .wide td:first-child {{ min-width: 9em; }}
 table + p {{ margin-top: 1.2em; }}
 code, pre {{ background: #f3f5f7; border-radius: 4px; font-size: .92em; }}
 code {{ padding: .1em .3em; }}
@@ -50,15 +58,18 @@ nav ul {{ columns: 2; padding-left: 1.2em; }}
 """
 
 
-def write(out, parts, quick):
+def write(out, parts):
     out = Path(out)
-    told = [(out / part / "part.md") for part in parts]
-    texts = [file.read_text() for file in told if file.exists()]
-    note = "\n*This is the quick one: few and small runs. Its figures are rough.*\n" if quick else ""
+    folders = [out / part for part in parts if (out / part / "part.md").exists()]
+    texts = [(folder / "part.md").read_text() for folder in folders]
     heads = [re.search(r"^## (.*)$", text, re.M).group(1) for text in texts]
-    contents = "\n".join(f"* [{head}](#{anchor(head)})" for head in heads)
+    quick = [is_quick(folder) for folder in folders]
+    note = f"\n{QUICK}\n" if any(quick) and all(quick) else ""
+    if any(quick) and not note:
+        texts = [re.sub(r"^(## .*)$", rf"\1\n\n{QUICK}", text, count=1, flags=re.M) if rough else text for text, rough in zip(texts, quick)]
+    contents = "\n".join(f"* [{head}](#{anchor(head)})" + (", quick" if rough else "") for head, rough in zip(heads, quick))
     where = tables.table(["", "measured with"], machine.rows(), ["---", "---"])
-    text = "\n".join([HEAD + note, contents, "", *texts, "## Where this was measured\n", where])
+    text = "\n".join([HEAD.format(files=FILES) + note, contents, "", words.words(), *texts, "## Where this was measured\n", where])
     (out / "report.md").write_text(text)
     (out / "report.html").write_text(PAGE.format(body=inlined(out, text)))
 
@@ -68,7 +79,7 @@ def publish(out, parts, folder, tables):
     folder.mkdir(parents=True, exist_ok=True)
     for file in folder.iterdir():
         file.unlink()
-    text = (Path(out) / "report.md").read_text()
+    text = (Path(out) / "report.md").read_text().replace(FILES, COPIED)
     for file, ending in sorted(set(re.findall(r"\]\(([\w-]+/[\w-]+)\.(svg|png)\)", text))):
         name = file.replace("/", "-") + ".png"
         shutil.copyfile(Path(out) / f"{file}.png", folder / name)

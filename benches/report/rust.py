@@ -10,7 +10,7 @@ def bench(job, name, outputs, more=()):
     """Runs `cargo bench --bench NAME`, which writes these files, unless that has been done."""
 
     def work():
-        job.say(f"building the bench {name}")
+        job.say(f"building the bench {name} (a few minutes where a source is newer, and then no word until it is measured)")
         words = ["bench", "--quiet", "--locked", "--package", "qdist-benches", "--bench", name]
         run([cargo(), *words, "--no-run"], cwd=ROOT)
         run([cargo(), *words, "--", *(["--quick"] if job.quick else []), *more, job.out], cwd=ROOT)
@@ -20,7 +20,7 @@ def bench(job, name, outputs, more=()):
 
 def program(job):
     """Builds `qdist` and returns its path."""
-    job.say("building the program qdist")
+    job.say("building the program qdist (a minute or two where a source is newer)")
     run([cargo(), "build", "--quiet", "--release", "--locked", "--package", "qdist-cli"], cwd=ROOT)
     return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "release/qdist"
 

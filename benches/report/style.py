@@ -15,12 +15,19 @@ COLORS = {
     "MuJoCo": "#D55E00",
     "coal": "#009E73",
     "FCL": "#CC79A7",
+    "FCL signed": "#CC79A7",
     "libccd EPA": "#E69F00",
     "libccd MPR": "#8C6D1F",
     "Bullet": "#000000",
     "parry": "#7F7F7F",
 }
-MARKERS = dict(zip(COLORS, "oos^Dvv<P", strict=True))
+MARKERS = dict(zip(COLORS, "oos^Ddvv<P", strict=True))
+
+
+def dash(solver):
+    """FCL has two functions: the second is drawn like the first, and dashed."""
+    return "--" if solver == "FCL signed" else "-"
+
 
 plt.rcParams.update(
     {

@@ -2,6 +2,9 @@
 
 import csv
 
+# Why a cell has no number; `words.py` tells what they mean.
+NOT_ASKED, GIVEN_UP, NOT_FINISHED, NOT_COUNTED, NO_SHAPE, NOT_HERE = "not asked", "given up", "not finished", "not counted", "no such shape", "not here"
+
 
 def read(path):
     """A CSV file as a list of dictionaries; empty where there is none."""

@@ -95,9 +95,9 @@ def tell(job):
         if not mine:
             text.append("The larger sets, which lie beside the project and not in it, were not asked.\n")
             continue
-        text.append(f"**{title.format(cases=mine[0]['cases'])}.** Times are medians over all pairs; ratios by family.\n")
+        text.append(f"**{title.format(cases=mine[0]['cases'])}.** Times are medians over all pairs. Ratios are those of families in which both finish at least {LEAST} pairs, and over these, also where the peer is wrong.\n")
         text.append(summary(mine, [row for row in ratios if row["set"] == name]))
-    text.append("Run it: `./x compare OUT=dir` prints families and sets, too.\n")
+    text.append("Run it: `./x compare OUT=dir` prints families and sets, too, and the ratios over the cases that a peer gets right.\n")
     return "\n".join(text)
 
 

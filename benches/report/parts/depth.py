@@ -156,7 +156,7 @@ depth; of qdist it is that of the upper bound. A curve is one solver over its to
 
 SEE = {
     "instructions": "Down is more exact, left is cheaper. Open markers failed on more than 1 % of the pairs (no answer, or more than 1 % off); rings mark what nobody beats in both. Errors below 1e-16 are drawn there.",
-    "time": "The same over time. Times are medians of one interleaved run; the cost of the call itself is in them.",
+    "time": "The same over time. Times are medians of one interleaved run, in which every solver is warm: it makes a few queries of its own before its time is taken. The cost of the call itself is in them.",
 }
 
 
@@ -177,7 +177,7 @@ def draw(job, rows, axis, name, unit):
             curve = [(float(row[axis]) * scale, max(float(row["median_error"]), LEAST), float(row["failed"])) for row in curve]
             if not curve:
                 continue
-            (line,) = ax.plot([p[0] for p in curve], [p[1] for p in curve], color=color, linewidth=1.2, marker=style.MARKERS[solver], markersize=5)
+            (line,) = ax.plot([p[0] for p in curve], [p[1] for p in curve], color=color, linewidth=1.2, linestyle=style.dash(solver), marker=style.MARKERS[solver], markersize=5)
             handles[solver] = line
             bad = [p for p in curve if p[2] > 0.01]
             ax.plot([p[0] for p in bad], [p[1] for p in bad], linestyle="", marker=style.MARKERS[solver], markersize=5, color=color, markerfacecolor="white")
@@ -199,6 +199,7 @@ def draw(job, rows, axis, name, unit):
 def beside(rows):
     """The table: qdist by default, beside MuJoCo and the best other solver that is right."""
     lines, lost = [], []
+    absent = tables.NO_SHAPE if any(row["solver"] == "MuJoCo" for row in rows) else tables.NOT_HERE
     for family, set_ in dict.fromkeys((row["family"], row["set"]) for row in rows):
         mine = [row for row in rows if (row["family"], row["set"]) == (family, set_)]
         ours = next((row for row in mine if row["solver"] == "qdist" and row["tolerance"] == "default"), None)
@@ -208,12 +209,12 @@ def beside(rows):
         measure = "instructions" if ours["instructions"] else "median_ns"
         best = min(right, key=lambda row: float(row[measure] or "inf"), default=None)
         mujoco = next((row for row in mine if row["solver"] == "MuJoCo" and row["tolerance"] == "default"), None)
-        ratio = lambda other: "gap" if other is None or not other[measure] else f"{float(ours[measure]) / float(other[measure]):.2f}"
+        ratio = lambda other: f"{float(ours[measure]) / float(other[measure]):.2f}" if other and other[measure] else ""
         what = family if set_ == "std" else f"{family}, {set_}"
         if best is not None and float(ours[measure]) > float(best[measure]):
             lost.append(f"{what} ({ratio(best)} times {best['solver']})")
         names = f"{best['solver']}, {best['tolerance']}" if best else "none"
-        lines.append([what, ours["instructions"] or "gap", f"{float(ours['median_error']):.0e}", ratio(mujoco), ratio(best), names])
+        lines.append([what, ours["instructions"] or tables.NOT_COUNTED, f"{float(ours['median_error']):.0e}", ratio(mujoco) or absent, ratio(best), names])
     head = ["bodies", "qdist, instructions", "error", "to MuJoCo", "to the best that is right", "which is"]
     text = tables.table(head, lines, ["---", "---:", "---:", "---:", "---:", "---"])
     text += f"\n*Right* is who answers every pair with a median error of at most {RIGHT['error']:.0e}. Ratios of instructions, qdist by default; below 1 qdist is the cheaper one.\n"

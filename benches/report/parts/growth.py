@@ -90,12 +90,13 @@ def tell(job):
     fits = {(name, what): fitted([(row["size"], row[what]) for row in rows if row["series"] == name]) for name in names for what in MEASURES}
     draw(job, rows, names, fits)
     text = [INTRODUCTION, style.shown(job, "growth", "Work and memory against size, a panel a series", "Marks are measured, thin lines the fitted powers. A flat line costs nothing more; the steeper, the worse. Points that leave their line are growth that is no power.")]
-    cell = lambda fit: "gap" if fit is None else f"{fit[0]:.2f}".replace("-0.00", "0.00")
+    cell = lambda fit: "too few" if fit is None else f"{fit[0]:.2f}".replace("-0.00", "0.00")
     lines = [[name, *(cell(fits[name, what]) for what in MEASURES)] for name in names]
     text.append(tables.table(["exponent over", *(label for label, _, _ in MEASURES.values())], lines))
+    text.append("\n*Too few*: less than three sizes at which there is any, or at which it was counted.\n")
     text.append("\nThe largest of each series:\n")
     ends = [max((row for row in rows if row["series"] == name), key=lambda row: row["size"]) for name in names]
-    number = lambda x: "gap" if math.isnan(x) else f"{x:,.0f}"
+    number = lambda x: tables.NOT_COUNTED if math.isnan(x) else f"{x:,.0f}"
     text.append(tables.table(["series", "size", *(label for label, _, _ in MEASURES.values())], [[row["series"], f"{row['size']:.3g}", *(number(row[what]) for what in MEASURES)] for row in ends]))
     text.append(lost(names, fits))
     text.append("Run it: `./x report PART=growth OUT=dir`.\n")

@@ -1,31 +1,23 @@
 """Distances in up to six dimensions, and grasps: the width of the bracket against time, beside linearised cones and the paper's bookkeeping."""
 
-import csv
 import os
 import re
-import statistics
 
-from report import build, grasps, rust, style, tables
-from report.cases import Dice
+from report import build, rust, style, tables
 from report.job import ROOT, run
-from report.tables import duration
+from report.parts import pyramids
+from report.parts.pyramids import width
+from report.tables import GIVEN_UP, NOT_ASKED, NOT_FINISHED, duration
 
 DQ = ["dq.csv", "fit.csv", "anytime.csv"]
 # Narrower brackets are drawn here.
 LEAST = 1e-13
 
-CONTACTS = [2, 3, 4, 5]
-SIDES = [4, 8, 16, 32, 64]
-RELATIVE = ["0.5", "1e-1", "1e-2", "1e-3", "1e-4"]
-# Grasps that hold less than this are left out: of them a pyramid may hold nothing, and any error is possible.
-HOLDS = 0.02
-NORMS = ("L1", "Linf")
-
 
 def measure(job):
     rust.bench(job, "dq", DQ)
     rust.bench(job, "grasp", ["grasp.csv"])
-    job.step("linearised", ["linearised.csv"], lambda: linearised(job))
+    job.step("linearised", ["linearised.csv"], lambda: pyramids.linearised(job))
     job.step("gripper", ["gripper.txt"], lambda: gripper(job))
     job.step("worst case", ["worst.csv", "flatter.csv"], lambda: worst(job))
 
@@ -48,57 +40,13 @@ def worst(job):
     job.write_rows("flatter.csv", [dict(zip(("off", "outcome", "steps"), row)) for row in found], ["off", "outcome", "steps"])
 
 
-def linearised(job):
-    """qdist's brackets and the hulls of linearised cones, of the same grasps."""
-    program = rust.program(job)
-    chosen = {}
-    for contacts in CONTACTS:
-        chosen[f"regular {contacts}"] = grasps.regular_grasp(contacts)
-        dice = Dice(f"grasps {contacts}")
-        tried = {f"random {contacts} {k}": grasps.random_grasp(dice, contacts) for k in range(300)}
-        held = [row["id"] for row in brackets(job, program, tried, "1e-1") if row["norm"] == "L1" and float(row["lower"]) > HOLDS]
-        chosen.update({name: tried[name] for name in held[: 2 if job.quick else 5]})
-    rows = []
-    for relative in RELATIVE:
-        runs = [brackets(job, program, chosen, relative) for _ in range(3)]
-        for same in zip(*runs):
-            one = same[0] | {"ns": min(int(row["ns"]) for row in same)}
-            rows.append(one | {"grasp": one["id"], "method": "qdist", "setting": relative})
-    for name, contacts in chosen.items():
-        for norm in NORMS:
-            rows += hulls(job, name, contacts, norm)
-    job.write_rows("linearised.csv", rows, ["grasp", "norm", "method", "setting", "lower", "upper", "outcome", "ns"])
-
-
-def brackets(job, program, chosen, relative):
-    file = job.path("grasps.json")
-    grasps.write(file, chosen)
-    said = run([program, "grasp", file, "--csv", "--relative", relative])
-    return list(csv.DictReader(said.splitlines()))
-
-
-def hulls(job, name, contacts, norm):
-    """More and more edges, while that may be expected to be done in time: twice the edges take about eight times as long."""
-    seconds, points = (1, 800) if job.quick else (15, 4000)
-    spent = 0.0
-    for sides in SIDES:
-        if 8 * spent > seconds or grasps.count(len(contacts), sides, norm) > points:
-            return
-        found = grasps.linearised(contacts, sides, norm)
-        row = {"grasp": name, "norm": norm, "method": "Qhull", "setting": sides}
-        if found is None:
-            yield row | {"outcome": "failed"}
-            return
-        spent = found["ns"] / 1e9
-        yield row | {"lower": found["d"], "upper": found["d"], "outcome": found["options"], "ns": found["ns"]}
-
-
 # ------------------------------------------------------------------------------------------------------------ the page
 
 INTRODUCTION = """## Distances in up to six dimensions, and grasps
 
 How large a multiple of a set Q fits into a set A, around the origin? For grasps, A is what the contacts can resist, in six dimensions, and the multiple is the
-grasp's quality. Every answer is a bracket, and its width is what is drawn: it is how far the answer may be off.
+grasp's quality. Every answer is a bracket, and its width is what is drawn: it is how far the answer may be off. L1 and L-infinity are two limits of the contact forces
+([words](#words)).
 """
 
 
@@ -109,9 +57,9 @@ def tell(job):
     text.append(style.shown(job, "bracket-time", "Width of the bracket against time, a panel a case", "Down is more certain, left is faster. Rows a1 to a5 are those of Zheng & Yamane's Table I, A the same and Q another set; then grasps, and an ellipsoid in six dimensions; scales differ. Plain expansion is one growing polytope and nothing else; the paper's bookkeeping is the same polytope as a list that is scanned. Polytopal Q end exactly: what is narrower than 1e-13 is drawn there."))
     text.append(dimensions(rows))
     text.append(one_run(job))
-    text.append(beside_hulls(job))
+    text.append(pyramids.beside(job))
     text.append(questions(job))
-    text.append(lost(job, rows))
+    text.append(lost(rows) + pyramids.lost(job))
     text.append("Run it: `./x report PART=high OUT=dir`; the benches alone: `./x bench-dq OUT=dir`, `./x bench-grasp OUT=dir`.\n")
     return "\n".join(text)
 
@@ -142,10 +90,6 @@ def split(name):
     """A case, and the method that its suffix tells."""
     case, slash, method = name.partition("/")
     return case, slash + method
-
-
-def width(row):
-    return float(row["upper"]) - float(row["lower"])
 
 
 def draw_cases(job, rows):
@@ -192,11 +136,22 @@ def finish(figure, axes, here, xlabel, ylabel):
         ax.set_xlabel(xlabel)
 
 
-def finest(rows, name, most=1.01e-4):
-    """The converged run with the smallest tolerance of at least 1e-4, and of these the one with the most memory."""
-    good = [row for row in rows if row["case"] == name and row["scalar"] == "f64" and row["outcome"] == "converged" and float(row["eps"]) >= 0.99e-4]
-    good = [row for row in good if float(row["eps"]) <= most]
-    return min(good, key=lambda row: (float(row["eps"]), -int(row["max_facets"])), default=None)
+def to_four(rows, name):
+    """The runs of a case to an absolute 1e-4."""
+    return [row for row in rows if row["case"] == name and row["scalar"] == "f64" and 0.99e-4 <= float(row["eps"]) <= 1.01e-4]
+
+
+def finest(rows, name):
+    """The one with the most memory that converged."""
+    good = [row for row in to_four(rows, name) if row["outcome"] == "converged"]
+    return max(good, key=lambda row: int(row["max_facets"]), default=None)
+
+
+def missing(rows, name):
+    """Why there is none."""
+    if to_four(rows, name):
+        return NOT_FINISHED
+    return GIVEN_UP if any(row["case"] == name for row in rows) else NOT_ASKED
 
 
 def dimensions(rows):
@@ -206,7 +161,7 @@ def dimensions(rows):
         line = [n]
         for solid in ("ellipsoid", "box"):
             row = finest(rows, f"{solid}_{n}")
-            line += [duration(float(row["median_ns"])), row["iterations"]] if row else ["gap", "gap"]
+            line += [duration(float(row["median_ns"])), row["iterations"]] if row else 2 * [missing(rows, f"{solid}_{n}")]
         lines.append(line)
     head = ["dimension", "ellipsoid", "iterations", "box", "iterations"]
     return "What a dimension costs, to an absolute 1e-4: A with semi axes evenly from 1 to 2, Q the unit ball.\n\n" + tables.table(head, lines, ["---:"] * 5)
@@ -247,92 +202,6 @@ def one_run(job):
     return text + f"\nA bracket of 1 % is there after: {'; '.join(said)}.\n"
 
 
-# -------------------------------------------------------------------------------------------------- linearised cones
-
-
-def short(rows, grasp, norm):
-    """(milliseconds, relative error, setting) of qdist and of Qhull; the truth is in qdist's narrowest bracket."""
-    mine = [row for row in rows if (row["grasp"], row["norm"]) == (grasp, norm) and row["lower"]]
-    ours = [row for row in mine if row["method"] == "qdist"]
-    truth = min(ours, key=width)
-    lower = float(truth["lower"])
-    curves = {"qdist": [], "Qhull": []}
-    for row in mine:
-        off = width(row) / float(row["upper"]) if row["method"] == "qdist" else max(lower - float(row["upper"]), 0.0) / lower
-        curves[row["method"]].append((float(row["ns"]) / 1e6, off, row["setting"]))
-    return curves
-
-
-def medians(curves, method):
-    """The median over grasps, a point a setting; only settings that all grasps have."""
-    settings = [setting for _, _, setting in curves[0][method]]
-    points = []
-    for setting in settings:
-        same = [point for curve in curves for point in curve[method] if point[2] == setting]
-        if len(same) == len(curves):
-            points.append((statistics.median(p[0] for p in same), statistics.median(p[1] for p in same), setting))
-    return points
-
-
-def of_kind(rows, kind, contacts):
-    return sorted({row["grasp"] for row in rows if row["grasp"].startswith(f"{kind} {contacts}")})
-
-
-KINDS = {"random": ("-", "full"), "regular": ("--", "none")}
-PEER = {"qdist": ("#0072B2", "o"), "Qhull": ("#D55E00", "s")}
-
-
-def beside_hulls(job):
-    import matplotlib.pyplot as plt
-
-    rows = job.rows("linearised.csv")
-    figure, axes = plt.subplots(2, len(CONTACTS), figsize=(11, 6), sharex=True, sharey=True)
-    handles = {}
-    for line, norm in zip(axes, NORMS):
-        for contacts, ax in zip(CONTACTS, line):
-            for kind, (dash, fill) in KINDS.items():
-                curves = [short(rows, grasp, norm) for grasp in of_kind(rows, kind, contacts)]
-                for method, (color, marker) in PEER.items():
-                    points = medians(curves, method) if curves else []
-                    (handle,) = ax.plot([p[0] for p in points], [max(p[1], 1e-6) for p in points], color=color, linestyle=dash, marker=marker, fillstyle=fill, markersize=5, linewidth=1.3)
-                    handles[f"{'qdist, bracket' if method == 'qdist' else 'linearised cones + Qhull'}, {kind}"] = handle
-                    if method == "Qhull" and kind == "random":
-                        for x, y, sides in points:
-                            ax.annotate(sides, (x, max(y, 1e-6)), textcoords="offset points", xytext=(4, 4), fontsize=8, color=color)
-            soft = "soft" if contacts == grasps.SOFT else "hard"
-            ax.set(xscale="log", yscale="log", title=f"{contacts} {soft}, {'L1' if norm == 'L1' else 'L-infinity'}")
-    for ax in axes[:, 0]:
-        ax.set_ylabel("relative error")
-    for ax in axes[-1]:
-        ax.set_xlabel("milliseconds")
-    style.decades(axes[0, 0].xaxis)
-    style.decades(axes[0, 0].yaxis)
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
-    style.save(job, figure, "linearised")
-    sentence = "Other tools replace friction cones by pyramids (the numbers tell their edges) and ask Qhull for the hull: their error is how much less than the truth they find, with nothing that tells them. qdist's is the width of its bracket, which it tells. Where red ends early, Qhull's next hull was not waited for; an error below 1e-6 is drawn there. Full: random grasps (medians); open: a regular one."
-    return "\n".join(["**Friction pyramids.**\n", style.shown(job, "linearised", "Error against time: brackets, and hulls of linearised cones", sentence), hull_table(rows)])
-
-
-def hull_table(rows):
-    lines = []
-    for norm in NORMS:
-        for contacts in CONTACTS:
-            curves = [short(rows, grasp, norm) for grasp in of_kind(rows, "random", contacts)]
-            line = [f"{contacts}, {'L1' if norm == 'L1' else 'L-infinity'}"]
-            points = {p[2]: p for p in medians(curves, "Qhull")} if curves else {}
-            for sides in ("4", "8", "16", "32", "64"):
-                line.append(f"{100 * points[sides][1]:.2g} %, {duration(1e6 * points[sides][0])}" if sides in points else "gap")
-            ours = {p[2]: p for p in medians(curves, "qdist")} if curves else {}
-            line += [duration(1e6 * ours[setting][0]) if setting in ours else "gap" for setting in ("1e-2", "1e-3")]
-            lines.append(line)
-    asked = [row for row in rows if row["method"] == "Qhull"]
-    again, failed = (sum(row["outcome"] == outcome for row in asked) for outcome in ("QJ", "failed"))
-    head = ["contacts", *(f"{sides} edges" for sides in SIDES), "qdist, 1 %", "qdist, 0.1 %"]
-    text = "How much of d pyramids lose, and in what time (medians of random grasps); in the last columns the time of a bracket that is so narrow.\n\n"
-    text += tables.table(head, lines, ["---"] + ["---:"] * 7)
-    return text + f"\nOf {len(asked)} hulls Qhull could not make {again + failed} of the points as they are; with the points moved a little (`QJ`, whose time is told), {again} of these came out. Times of Qhull are of its hull alone, processor time; a soft contact has two edges more, which turn.\n"
-
-
 # ---------------------------------------------------------------------------------------------------------- questions
 
 ASKED = {
@@ -355,33 +224,24 @@ def questions(job):
         line = [name]
         for count in contacts:
             row = next((row for row in rows if (row["question"], row["relative"], int(row["contacts"])) == (question, relative, count)), None)
-            line.append(duration(1e6 * float(row["median_ms"])) if row else "gap")
+            line.append(duration(1e6 * float(row["median_ms"])) if row else NOT_ASKED)
         lines.append(line)
     text = f"**What a planner and a controller ask**, of random closed grasps of soft fingers, L-infinity (medians of {rows[0]['grasps']} grasps):\n\n"
     return text + tables.table(["question", *(f"{count} contacts" for count in contacts)], lines)
 
 
-def lost(job, rows):
-    """Where something else is faster."""
-    found = []
+def lost(rows):
+    """Where a baseline is faster."""
+    found, both, open_ = [], 0, 0
     for case in dict.fromkeys(split(row["case"])[0] for row in rows):
         ours = finest(rows, case)
         for method in ("/expand", "/scan", "/scan_sorted"):
             theirs = finest(rows, case + method)
-            if ours and theirs and ours["eps"] == theirs["eps"] and 1.05 * float(theirs["median_ns"]) < float(ours["median_ns"]):
+            open_ += not theirs and missing(rows, case + method) != NOT_ASKED
+            both += bool(ours and theirs)
+            if ours and theirs and 1.05 * float(theirs["median_ns"]) < float(ours["median_ns"]):
                 found.append(f"{case} ({float(ours['median_ns']) / float(theirs['median_ns']):.1f} times the time of {METHODS[method][0]})")
-    text = f"**Where we lose**, to an absolute 1e-4 and by more than 5 %: {'; '.join(found) or 'to neither baseline in any case'}. "
-    linear = job.rows("linearised.csv")
-    better = []
-    for norm in NORMS:
-        for contacts in CONTACTS:
-            for kind in KINDS:
-                curves = [short(linear, grasp, norm) for grasp in of_kind(linear, kind, contacts)]
-                if not curves:
-                    continue
-                ours, theirs = medians(curves, "qdist"), medians(curves, "Qhull")
-                ahead = [p for p in theirs if not any(q[0] <= p[0] and q[1] <= p[1] for q in ours)]
-                if ahead:
-                    least = min(ahead, key=lambda p: p[1])
-                    better.append(f"{contacts} {kind}, {'L1' if norm == 'L1' else 'L-infinity'} ({least[2]} edges: {100 * least[1]:.2g} % in {duration(1e6 * least[0])})")
-    return text + f"Pyramids are at some time nearer to the truth than qdist's bracket is wide, without knowing it: {'; '.join(better) or 'nowhere'}.\n"
+    text = "**Where we lose** to plain expansion or the paper's bookkeeping, to an absolute 1e-4 and by more than 5 %: "
+    if not both:
+        return f"{text}nobody knows, of them no run ended that was asked for so much ({open_} cases ended before, or were given up). "
+    return f"{text}in {len(found)} of {both} cases that they finished ({open_} more did not finish, or were given up){': ' if found else ''}{'; '.join(found)}. "

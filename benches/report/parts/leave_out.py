@@ -132,7 +132,7 @@ def tell(job):
     text.append("**Work.** What a query does is what its bodies ask for: support calls of A - B, and vertices and facets that were made (medians).\n")
     work_rows = [row for row in job.rows("work.csv")]
     names = {"qdist": "f64", "qdist f32": "f32"}
-    lines = [[row["what"], names[row["solver"]], row["instructions"] or "gap", f"{float(row['calls']):.0f}", f"{float(row['vertices']):.0f}", f"{float(row['facets']):.0f}"] for row in work_rows]
+    lines = [[row["what"], names[row["solver"]], row["instructions"] or tables.NOT_COUNTED, f"{float(row['calls']):.0f}", f"{float(row['vertices']):.0f}", f"{float(row['facets']):.0f}"] for row in work_rows]
     text.append(tables.table(["bodies", "scalar", "instructions", "support calls", "vertices", "facets"], lines, ["---", "---", "---:", "---:", "---:", "---:"]))
     text.append("\n**Stack** of a query, and the **memory** that a caller gives a solver, in bytes:\n")
     text.append(tables.table(["query", "bytes"], [list(row.values()) for row in job.rows("stack.csv")]))

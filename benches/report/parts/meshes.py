@@ -64,7 +64,7 @@ def tell(job):
     queries = len({row["query"] for row in rows if row["group"] in groups})
     text = [INTRODUCTION.format(queries=queries, groups=len(groups), data=data)]
     draw(job, rows, groups)
-    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors, since most are 0, and what is below 0.01 % is drawn there. The paper's variants are qdist with other walks or seeds."))
+    text.append(style.shown(job, "error-time", "Error of mesh depth against time, a panel a pair of bodies and metric", "Down is more exact, left is faster: the mean of errors, since most are 0, and what is below 0.01 % is drawn there. The paper's variants are qdist with other walks or seeds. Bodies and metrics are told of at the [words](#words)."))
     text.append(summary(rows, groups))
     text.append(deepest(job))
     text.append(passages(job))
@@ -111,7 +111,7 @@ def summary(rows, groups):
             line = [f"{group}, {'DISP' if metric == 'disp' else 'object norm'}"]
             for variant in (*EFFORTS, *VARIANTS):
                 found = errors(rows, group, metric, variant)
-                line.append(f"{found[2]}/{found[3]}, {tables.duration(1e6 * found[1])}" if found else "gap")
+                line.append(f"{found[2]}/{found[3]}, {tables.duration(1e6 * found[1])}" if found else tables.NOT_ASKED)
             lines.append(line)
     head = ["bodies, metric", *EFFORTS, *VARIANTS.values()]
     return "Within 1 % of the best value known, and the median time:\n\n" + tables.table(head, lines)
@@ -120,7 +120,7 @@ def summary(rows, groups):
 def deepest(job):
     rows = [row for row in job.rows("triangles.csv") if row["best_known"]]
     if not rows:
-        return "Neither FCL nor coal is here: what pairs of triangles tell is a gap.\n"
+        return "Neither FCL nor coal is here, whose pairs of triangles would be told of.\n"
     lines = []
     for library in dict.fromkeys(row["library"] for row in rows):
         for group in dict.fromkeys(row["group"] for row in rows):
@@ -136,14 +136,14 @@ def deepest(job):
 def passages(job):
     rows = job.rows("narrow.csv")
     if not rows:
-        return "\nNarrow passages are of the larger data set, which is not here: a gap.\n"
+        return "\nNarrow passages are of the larger data set, which is not here: they were not asked.\n"
     lines = []
     for query in dict.fromkeys(row["query"] for row in rows):
         mine = [row for row in rows if row["query"] == query]
         line = [query, f"{float(mine[0]['planted']):.3g}"]
         for effort in EFFORTS:
             row = next((row for row in mine if row["effort"] == effort), None)
-            line.append(f"{float(row['upper']) / float(row['planted']):.3g}, {tables.duration(float(row['ns']))}" if row else "gap")
+            line.append(f"{float(row['upper']) / float(row['planted']):.3g}, {tables.duration(float(row['ns']))}" if row else tables.NOT_ASKED)
         lines.append(line)
     default = [float(row["upper"]) / float(row["planted"]) for row in rows if row["effort"] == "default"]
     off = sum(ratio > 1 + WITHIN for ratio in default)

@@ -45,9 +45,7 @@ def powers(*exponents):
 
 def rows():
     """(extreme, value, function of dice that makes a pair, size that errors are shares of, sizes of the numbers)."""
-    for name, size in powers(-140, -60, -30, -9, 9, 30, 60, 140):
-        yield "size of the bodies", name, lambda dice, s=size: random_pair(dice, s), size
-    for name, size in powers(-17, 17):
+    for name, size in powers(-140, -60, -30, -17, -9, 9, 17, 30, 60, 140):
         yield "size of the bodies", name, lambda dice, s=size: random_pair(dice, s), size
     for name, far in powers(3, 6, 9, 12):
         yield "distance from the origin, in sizes", name, lambda dice, f=far: away(dice, f), 1.0
@@ -240,14 +238,15 @@ subnormal numbers flushed to zero, in double and in single precision; bodies are
 **Of {answers} queries to qdist {false} have a false bracket, {none} no answer; {open} end with a limit or what rounding allows, and a wider bracket than asked for.** The truth of bodies, of unit
 sets on boxes and cross-polytopes and of meshes is a bracket or a closed form; of grasps it is the lowest value that a search of its own finds (which a lower bound must not exceed), and what the
 direction proves (which the upper bound must not be below). Whoever gives a depth alone fails where that is off by more than 1 % of it, and by more than a millionth of the bodies'
-size (in single precision by more than 2e-5), or where there is no answer; that bodies are apart is an answer where they are. Of grasps and meshes the bracket itself must be as narrow.
+size (in single precision by more than 2e-5), or where there is no answer; that bodies are apart is an answer where they are. Of unit sets, grasps and meshes the bracket itself must be as narrow, or the
+query counts as one whose bracket is wide.
 """
 
 
 def tell(job):
     rows_ = job.rows("stability.csv")
     ours = [row for row in rows_ if row["solver"].startswith("qdist")]
-    extremes = list(dict.fromkeys((row["extreme"], row["value"]) for row in rows_))
+    extremes = ordered(rows_)
     text = [
         INTRODUCTION.format(
             pairs=rows_[0]["pairs"],
@@ -260,13 +259,20 @@ def tell(job):
     ]
     draw_failures(job, rows_, extremes)
     what = "Share of pairs that each solver fails on, a row an extreme, a column a solver"
-    text.append(style.shown(job, "failures", what, "Darker is worse: the share of pairs without an answer, or with one that is wrong, in %. An empty cell is 0. Hatched: not asked (out of the range of single precision, or a question that the solver does not know)."))
+    text.append(style.shown(job, "failures", what, "In %, darker is more, an empty cell is 0. Orange: the share of pairs without an answer, or with one that is wrong. Blue, of qdist: brackets that are true, but wider than 1 % of their upper end, as they say themselves. Hatched: not asked (out of the range of single precision, or a question that the solver does not know)."))
     draw_widths(job, ours, extremes)
     what = "Width of qdist's brackets, a row an extreme"
     text.append(style.shown(job, "widths", what, "How far an answer may be off, as it says itself: the median (dot) and the worst (end of the line) of each row, as a share of the bodies' size. Left is better. The default tolerance is 1e-6 of the depth, in single precision 1e-4."))
     text.append(lost(ours))
     text.append("Run it: `./x report PART=stability OUT=dir` (`dir/stability/stability.csv` has outcomes and rounding modes, too).\n")
     return "\n".join(text)
+
+
+def ordered(rows_):
+    """(extreme, value), the values of an extreme in order."""
+    found = list(dict.fromkeys((row["extreme"], row["value"]) for row in rows_))
+    names = list(dict.fromkeys(extreme for extreme, _ in found))
+    return sorted(found, key=lambda pair: (names.index(pair[0]), float(pair[1] or 0)))
 
 
 def name_of(extreme):
@@ -289,9 +295,11 @@ def draw_failures(job, rows_, extremes):
             if row is None or row["pairs"] == "0":
                 ax.add_patch(plt.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor="white", edgecolor="#bbbbbb", hatch="////", linewidth=0))
                 continue
-            share = int(row["failed"]) + int(row["no_answer"])
-            share = 100 * share / int(row["pairs"])
-            ax.add_patch(plt.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=plt.cm.Oranges(0.9 * share / 100) if share else "white", edgecolor="white"))
+            # (With a true bracket what failed is wide, and not wrong.)
+            wide = bool(row["false"]) and not int(row["false"]) + int(row["no_answer"])
+            share = 100 * (int(row["failed"]) + int(row["no_answer"])) / int(row["pairs"])
+            colors = plt.cm.Blues if wide else plt.cm.Oranges
+            ax.add_patch(plt.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=colors(0.9 * share / 100) if share else "white", edgecolor="white"))
             if share:
                 ax.text(x, y, f"{share:.0f}" if share >= 1 else "<1", ha="center", va="center", fontsize=8, color="white" if share > 60 else "black")
     ax.set_xticks(range(len(solvers)), solvers, rotation=30, ha="left", rotation_mode="anchor")

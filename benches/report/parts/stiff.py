@@ -82,7 +82,7 @@ def tell(job):
     draw_energy(job, series)
     draw_jumps(job, numbers)
     text = [INTRODUCTION]
-    text.append(style.shown(job, "energy", "Energy over time of three scenes, at 1 and at 10 kHz, a line a solver", "The wide grey line is the exact depth: who lies on it neither heats nor cools the contact. Lines end where they leave the picture."))
+    text.append(style.shown(job, "energy", "Energy over time of three scenes, at 1 and at 10 kHz, a line a solver", "The wide grey line is the exact depth: who lies on it neither heats nor cools the contact. qdist is the thick dashed line, on top. Lines end where they leave the picture."))
     text.append(style.shown(job, "jumps", "Largest jump of depth and normal from tick to tick, a mark a solver and scene", "At 10 kHz: how far depth (left, as a share of the way that the body moves in a tick) and normal (right) jump from one tick to the next beyond what they must. Left is steadier; a jump of depth above 1 is a force that no motion explains. No jump at all is drawn at the left edge."))
     text.append(summary(numbers))
     text.append(lost(numbers))
@@ -109,13 +109,11 @@ def solvers_of(rows):
     return list(dict.fromkeys(row["solver"] for row in rows if row["solver"] != EXACT))
 
 
-# (FCL has two functions: the second is drawn like the first, and dashed.)
-def color(solver):
-    return style.COLORS[solver.replace(" signed", "")]
-
-
-def marker(solver):
-    return "d" if solver == "FCL signed" else style.MARKERS[solver]
+# (qdist comes last, and with gaps: where all are on the line, both it and they are seen.)
+LOOKS = {
+    EXACT: {"color": "#bbbbbb", "linewidth": 7, "solid_capstyle": "butt"},
+    "qdist": {"color": style.COLORS["qdist"], "linewidth": 2.6, "linestyle": (0, (4, 5))},
+}
 
 
 def draw_energy(job, series):
@@ -127,10 +125,9 @@ def draw_energy(job, series):
         for column, hz in enumerate(RATES):
             ax = axes[line, column]
             mine = [row for row in series if row["scene"] == scene and int(row["hz"]) == hz]
-            for solver in [EXACT, *solvers_of(mine)]:
+            for solver in [EXACT, *sorted(solvers_of(mine), key=lambda name: name == "qdist")]:
                 curve = [(float(row["time"]), float(row["share"])) for row in mine if row["solver"] == solver]
-                look = {"color": "#bbbbbb", "linewidth": 7, "solid_capstyle": "butt"} if solver == EXACT else {"color": color(solver), "linewidth": 1.2}
-                look["linestyle"] = "--" if solver == "FCL signed" else "-"
+                look = LOOKS.get(solver) or {"color": style.COLORS[solver], "linewidth": 1.2, "linestyle": style.dash(solver)}
                 (handles[solver],) = ax.plot([p[0] for p in curve], [p[1] for p in curve], **look)
             ax.set(title=f"{scene}, {hz // 1000} kHz", ylim=(0.7, 1.3))
         axes[line, 0].set_ylabel("energy, of the first")
@@ -154,7 +151,7 @@ def draw_jumps(job, rows):
             mine = [(scenes.index(row["scene"]), value(row)) for row in rows if row["solver"] == solver]
             # (A mark each, one above the other, so that none hides another.)
             heights = [scene + 0.7 * ((k + 0.5) / len(solvers) - 0.5) for scene, _ in mine]
-            (handles[solver],) = ax.plot([max(v, LEAST) for _, v in mine], heights, linestyle="", marker=marker(solver), markersize=5, color=color(solver))
+            (handles[solver],) = ax.plot([max(v, LEAST) for _, v in mine], heights, linestyle="", marker=style.MARKERS[solver], markersize=5, color=style.COLORS[solver])
         ax.set_xscale("log")
         for edge in range(len(scenes) - 1):
             ax.axhline(edge + 0.5, color="#bbbbbb", linewidth=0.6)
@@ -191,7 +188,7 @@ def summary(rows):
 def worst(rows, value, scale=1.0, unit=""):
     numbers = [scale * value(row) for row in rows]
     numbers = [number for number in numbers if not math.isnan(number)]
-    return f"{max(numbers):.1e} {unit}".strip() if numbers else "gap"
+    return f"{max(numbers):.1e} {unit}".strip() if numbers else tables.NOT_FINISHED
 
 
 # So much more than the best of the others is a loss, if it is more than what anybody would see.
@@ -201,18 +198,26 @@ WORDS = {"beyond": "energy", "depth_jump": "jump of depth", "normal_jump": "jump
 
 
 def lost(rows):
+    """Where another solver, which answers always, is better by more than is seen: a row a scene and rate."""
     names = {"qdist": "in double precision", "qdist f32": f"in single precision, at a tolerance of {TOLERANCES['qdist f32']}"}
-    said = [f"{name}: {'; '.join(behind(rows, solver)) or 'nowhere in these scenes, but in last digits'}" for solver, name in names.items()]
-    return "".join(f"\n**Where we lose**, {words}.\n" for words in said)
+    text = ""
+    for solver, name in names.items():
+        lines = [line for line in behind(rows, solver) if any(line[1:])]
+        text += f"\n**Where we lose**, {name}: {'ours, and the best of the others' if lines else 'nowhere in these scenes, but in last digits'}.\n"
+        text += "\n" + tables.table(["scene", *WORDS.values()], lines, ["---"] * 4) if lines else ""
+    return text
 
 
 def behind(rows, solver):
-    """Where another solver, which answers always, is better by more than is seen."""
     for scene, hz in dict.fromkeys((row["scene"], row["hz"]) for row in rows):
         here = [row for row in rows if (row["scene"], row["hz"]) == (scene, hz)]
         ours = next((row for row in here if row["solver"] == solver), None)
         others = [row for row in here if row["solver"] != EXACT and not row["solver"].startswith("qdist") and not row["silent"] and not row["ended"]]
-        for what, least in SEEN.items():
-            best = min(others, key=lambda row: row[what] if not math.isnan(row[what]) else math.inf, default=None)
-            if ours and best and ours[what] > max(least, LOST * best[what]):
-                yield f"{scene} at {int(hz) // 1000} kHz ({WORDS[what]} {ours[what]:.1e}, {best['solver']} {best[what]:.1e})"
+        if ours and others:
+            yield [f"{scene}, {int(hz) // 1000} kHz", *(worse(ours, others, what) for what in WORDS)]
+
+
+def worse(ours, others, what):
+    best = min(others, key=lambda row: row[what] if not math.isnan(row[what]) else math.inf)
+    lost = ours[what] > max(SEEN[what], LOST * best[what])
+    return f"{ours[what]:.1e}, {best['solver']} {best[what]:.1e}" if lost else ""
