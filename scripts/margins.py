@@ -145,7 +145,7 @@ boxes: upper of two words | solver/depth/boxes/mod.rs | [ball, T::zero()], @self
 boxes: nearest point | solver/depth/boxes/mod.rs | let error = @along.at_most(whole)@ + | T::zero()
 boxes: nearest point, rounding | solver/depth/boxes/mod.rs | -(distance + error + @(distance.abs() + slip.abs()) * (T::count(4) * T::ROUNDOFF)@) | T::zero()
 boxes: edges that are nearly across | solver/depth/boxes/zonotope.rs | if @magnitude(height) <= T::count(16) * T::ROUNDOFF@ { | false
-boxes: edges that are nearly parallel | solver/depth/boxes/zonotope.rs | * @(T::of(0.0625) / length)@; | T::zero()
+boxes: edges that are nearly parallel | solver/depth/boxes/zonotope.rs | e.high.abs() * (@T::of(0.0625) / length@)); | T::zero()
 
 fine: lower, error of heights | solver/depth/fine/level.rs | least.at_most(distance - @error@) | T::zero()
 fine: upper, error of heights | solver/depth/fine/level.rs | distance + @error@ | T::zero()

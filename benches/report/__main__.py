@@ -33,6 +33,7 @@ TABLES = [
     ("leave-out", "work.csv"),
     ("leave-out", "stack.csv"),
     ("leave-out", "memory.csv"),
+    ("leave-out", "embedded.csv"),
     ("growth", "growth.csv"),
     ("growth", "mesh-growth.csv"),
 ]

@@ -22,7 +22,7 @@ MORE = {
     "meshes": ["cli"],
     "stability": ["ffi-tests", "cli"],
     "stiff": ["ffi-tests"],
-    "leave-out": ["ffi-tests", "examples"],
+    "leave-out": ["ffi-tests", "examples", "scripts"],
     "growth": ["cli"],
     "papers": ["cli"],
 }

@@ -2,6 +2,8 @@
 
 import re
 import statistics
+import subprocess
+import sys
 
 from report import build, cases, rust, style, tables
 from report.job import ROOT, run
@@ -11,8 +13,9 @@ from report.solvers import DEFAULT, counted
 MEMORY = [f"--defsym={name}=0" for name in ("memcpy", "memset", "memmove", "memcmp", "bcmp")]
 
 # The smallest program, and what it grows by when one thing more is called. Names of C functions without `qdist_` and the scalar's suffix.
+ALONE = {"depth of boxes alone, the smallest program": ["solver_init", "depth3", "body_box"]}
 SPACE = {
-    "depth of spheres, the smallest program": ["solver_init", "depth3", "body_sphere"],
+    "depth of spheres, by expansion": ["solver_init", "depth3", "body_sphere"],
     "+ boxes": ["body_box"],
     "+ capsules": ["body_capsule"],
     "+ cylinders": ["body_cylinder"],
@@ -48,6 +51,8 @@ def measure(job):
         for group, list_ in (("space", SPACE), ("d_Q", HIGH)):
             base = next(iter(list_.values()))
             for scalar in ("f32", "f64"):
+                for what, names in ALONE.items() if group == "space" else ():
+                    rows.append({"group": group, "what": what, "scalar": scalar, "text": text_of(job, names, scalar), "added": 0})
                 smallest = text_of(job, base, scalar)
                 for what, names in list_.items():
                     size = text_of(job, base + names, scalar)
@@ -58,6 +63,16 @@ def measure(job):
     job.step("work", ["work.csv"], lambda: work(job))
     job.step("stack", ["stack.csv"], lambda: stack(job))
     job.step("memory", ["memory.csv", "plane.csv"], lambda: memory(job))
+    job.step("Cortex-M", ["embedded.csv"], lambda: embedded(job))
+
+
+def embedded(job):
+    """The programs for microcontrollers, where what builds and runs them is there."""
+    rows = []
+    if subprocess.run(["./x", "need", "embedded"], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0:
+        run([sys.executable, "scripts/embedded.py", job.built], cwd=ROOT)
+        rows = tables.read(job.built / "embedded.csv")
+    job.write_rows("embedded.csv", rows, list(rows[0]) if rows else ["query"])
 
 
 def stack(job):
@@ -116,8 +131,8 @@ def work(job):
 INTRODUCTION = """## What a scene does not need
 
 **Bytes.** A program links what it calls, and no more: the static library of `./x lib` is one section a function, and a shape brings its own code and the plans that it takes. The
-smallest program in single precision, the depth of two spheres, has {smallest:.0f} KB of code on {machine}; each bar is what one thing more adds to that. (Whole programs have less: what two of them share
-is counted once.)
+smallest program in single precision, the depth of two boxes, has {smallest:.0f} KB of code on {machine}; whatever is no box brings expansion, as two spheres do, and each further bar is what one thing more adds to
+those. (Whole programs have less: what two of them share is counted once.)
 """
 
 
@@ -128,7 +143,7 @@ def tell(job):
     smallest = int(next(row["text"] for row in rows if row["scalar"] == "f32"))
     text = [INTRODUCTION.format(smallest=smallest / 1024, machine=platform.machine())]
     draw(job, rows)
-    text.append(style.shown(job, "bytes", "Code of the smallest programs, and what one thing more adds", "Kilobytes of code: above, depth of bodies in space, whose smallest program knows spheres only; below, d_Q, whose smallest program knows a ball Q in three dimensions."))
+    text.append(style.shown(job, "bytes", "Code of the smallest programs, and what one thing more adds", "Kilobytes of code: above, depth of bodies in space, first of boxes alone, then of spheres, and what is added to those; below, d_Q, whose smallest program knows a ball Q in three dimensions."))
     text.append("**Work.** What a query does is what its bodies ask for: support calls of A - B, and vertices and facets that were made (medians).\n")
     work_rows = [row for row in job.rows("work.csv")]
     names = {"qdist": "f64", "qdist f32": "f32"}
@@ -138,18 +153,35 @@ def tell(job):
     text.append(tables.table(["query", "bytes"], [list(row.values()) for row in job.rows("stack.csv")]))
     rows = job.rows("memory.csv")
     text.append(tables.table(list(rows[0]), [list(row.values()) for row in rows], ["---:"] * 5))
+    text.append(on_microcontrollers(job))
     text.append("\nRun it: `./x report PART=leave-out OUT=dir`; `./x purity` proves that a program of boxes contains no other shape, and none in `float` anything in `double`.\n")
     return "\n".join(text)
+
+
+def on_microcontrollers(job):
+    rows = job.rows("embedded.csv")
+    if not rows:
+        return "\n**Microcontrollers**: gap (`./x need embedded` names what is missing).\n"
+    lines = [
+        [f"{row['query']}, {row['scalar']}", row["cpu"].replace("cortex-m", "M"), f"{row['converged']} of {row['asked']}", *(f"{int(row[key]):,}" for key in EMBEDDED)]
+        for row in rows
+    ]
+    heads = ["query", "Cortex", "converged", "instructions, median", "most", "stack", "workspace", "flash"]
+    said = "\n**Microcontrollers.** Firmware in QEMU, with this machine's bits: instructions a query, bytes of stack and workspace, and of flash for the whole program (`./x embedded`).\n"
+    return said + "\n" + tables.table(heads, lines, ["---", "---", *["---:"] * 6])
+
+
+EMBEDDED = ("median_instructions", "worst_instructions", "stack", "workspace", "flash")
 
 
 def draw(job, rows):
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(2, 1, figsize=(8.5, 6.4), height_ratios=[len(SPACE), len(HIGH)])
+    figure, axes = plt.subplots(2, 1, figsize=(8.5, 6.4), height_ratios=[len(ALONE | SPACE), len(HIGH)])
     for ax, group in zip(axes, ("space", "d_Q")):
         for shift, scalar, color in ((-0.2, "f32", style.COLORS["qdist f32"]), (0.2, "f64", style.COLORS["qdist"])):
             mine = [row for row in rows if row["group"] == group and row["scalar"] == scalar]
-            sizes = [int(row["text"] if k == 0 else row["added"]) / 1024 for k, row in enumerate(mine)]
+            sizes = [(int(row["added"]) or int(row["text"])) / 1024 for row in mine]
             bars = ax.barh([k + shift for k in range(len(mine))], sizes, height=0.38, color=color, label=scalar)
             ax.bar_label(bars, [f"{size:.1f}" for size in sizes], padding=3, fontsize=8)
         ax.set_yticks(range(len(mine)), [row["what"] for row in mine])
