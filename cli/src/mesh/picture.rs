@@ -24,8 +24,8 @@ const MARGIN: f64 = 30.0;
 const FAR: f64 = 4.0;
 /// What is nearer than this to a plane lies in it, in units of the scene.
 const SMALL: f64 = 1e-9;
-/// Squares in which something must be seen, in pixels.
-const SEEN: f64 = 0.5;
+/// What is seen in none of the squares of this size is not drawn, in pixels; borders are as wide.
+const SEEN: f64 = 1.0;
 
 const REST: [u8; 3] = [152, 166, 186];
 const BEFORE: [u8; 3] = [214, 66, 54];
@@ -300,8 +300,8 @@ mod tests {
             let picture = std::fs::read_to_string(folder.join("a_b_disp.svg")).unwrap();
             assert!(panels.split(' ').all(|word| picture.contains(word)));
             assert_eq!(picture.contains("after"), z < 1.0);
-            // Four facets each, of which some are cut.
-            assert!((4..100).contains(&picture.matches("<polygon").count()) && picture.len() < 20_000);
+            // Up to three facets each are seen, and of them some are cut.
+            assert!((2..100).contains(&picture.matches("<polygon").count()) && picture.len() < 20_000);
         }
         std::fs::remove_dir_all(&folder).unwrap();
     }
