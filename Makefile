@@ -202,7 +202,7 @@ report report-quick: asked lib $(venv)/.done
 bench-depth: OUT = out/depth
 bench-depth: asked lib $(venv)/.done
 	$(need)
-	@echo "measuring depth of bodies (about $(if $(QUICK),a minute,14 minutes)); results go to $(abspath $(OUT))"
+	@echo "measuring depth of bodies (about $(if $(QUICK),two minutes,14 minutes)); results go to $(abspath $(OUT))"
 	@$(report_for) $(if $(QUICK),--quick) --part depth --data-only --flat $(if $(AGAIN),--again)
 
 # Looks at what these are told before anything is built.

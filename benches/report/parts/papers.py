@@ -165,23 +165,49 @@ def draw_sets(job, rows):
 
 
 def drawn(ax, file, words=False):
-    """The program's picture: polygons, lines and the names of the axes; its title and legend with `words`."""
-    for element in xml.etree.ElementTree.parse(file).getroot():
-        kind, get = element.tag.rsplit("}")[-1], element.get
-        look = {"alpha": float(get("opacity", 1)), "zorder": 1}  # (in the order of the file)
-        if kind in ("polygon", "polyline"):
-            points = [tuple(map(float, pair.split(","))) for pair in get("points").split()]
-            x, y = zip(*points)
-            if kind == "polygon":
-                ax.fill(x, y, color=get("fill"), linewidth=0, **look)
-            else:
-                ax.plot(x, y, color=get("stroke"), linewidth=0.5 * float(get("stroke-width", 1)), **look)
-        elif kind == "text" and (words or len(element.text.strip()) < 4):
-            ax.text(float(get("x")), float(get("y")), element.text.strip(), va="top", fontsize=9)
-        elif kind == "circle":
-            ax.plot(float(get("cx")), float(get("cy")), marker="o", markersize=3, color=get("fill"), **look)
+    """The program's picture; its title and legend with `words`."""
+    root = xml.etree.ElementTree.parse(file).getroot()
+    for element in root:
+        if element.tag.endswith("}g"):
+            together(ax, root, element)
+        else:
+            put(ax, element, words)
     ax.set_aspect("equal")
-    ax.invert_yaxis()
+    ax.set_ylim(sorted(ax.get_ylim(), reverse=True))  # (y is down)
+
+
+def put(ax, element, words=False):
+    """A polygon, a line or the name of an axis."""
+    kind, get = element.tag.rsplit("}")[-1], element.get
+    look = {"alpha": float(get("opacity", 1)), "zorder": 1}  # (in the order of the file)
+    if kind in ("polygon", "polyline"):
+        points = [tuple(map(float, pair.split(","))) for pair in get("points").split()]
+        x, y = zip(*points)
+        if kind == "polygon":
+            ax.fill(x, y, color=get("fill"), linewidth=0.5 if get("stroke", "none") != "none" else 0, **look)
+        else:
+            ax.plot(x, y, color=get("stroke"), linewidth=0.5 * float(get("stroke-width", 1)), **look)
+    elif kind == "text" and (words or len(element.text.strip()) < 4):
+        ax.text(float(get("x")), float(get("y")), element.text.strip(), va="top", fontsize=9)
+    elif kind == "circle":
+        ax.plot(float(get("cx")), float(get("cy")), marker="o", markersize=3, color=get("fill"), **look)
+
+
+def together(ax, root, group):
+    """What is transparent as a whole: drawn aside, and laid over the rest."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    width, height = float(root.get("width")), float(root.get("height"))
+    aside = Figure(figsize=(width / 100, height / 100), dpi=100, layout="none")
+    canvas, page = FigureCanvasAgg(aside), aside.add_axes((0, 0, 1, 1))
+    aside.patch.set_alpha(0)
+    page.set(xlim=(0, width), ylim=(height, 0))
+    page.set_axis_off()
+    for element in group:
+        put(page, element)
+    canvas.draw()
+    ax.imshow(canvas.buffer_rgba(), extent=(0, width, height, 0), alpha=float(group.get("opacity")), zorder=1)
 
 
 # ------------------------------------------------------------------------------------------------------------ Fig. 4

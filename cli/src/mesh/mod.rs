@@ -12,6 +12,7 @@ mod args;
 mod bar;
 pub mod bodies;
 pub mod input;
+mod order;
 mod picture;
 pub mod read;
 pub mod seeds;
