@@ -22,7 +22,7 @@ pub(crate) const fn zeros<T: Real, const N: usize>() -> Vector<T, N> {
 #[inline(always)]
 pub fn norm<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
     let squared = v.dot(v);
-    if squared > T::SAFE_SQUARE && squared <= T::HUGE { squared.root() } else { far_norm(v) }
+    if squared > T::SAFE_SQUARE && squared < T::HUGE { squared.root() } else { far_norm(v) }
 }
 
 /// |x| without a call.
@@ -41,7 +41,7 @@ pub(crate) fn largest<T: Real, const N: usize>(v: &Vector<T, N>) -> T {
 #[inline]
 pub(crate) fn unit<T: Real, const N: usize>(v: &Vector<T, N>) -> Vector<T, N> {
     let squared = v.dot(v);
-    if squared > T::SAFE_SQUARE && squared <= T::HUGE {
+    if squared > T::SAFE_SQUARE && squared < T::HUGE {
         v * (T::one() / squared.root())
     } else if N > 3 {
         // (A copy of a long vector would cost every caller its place on the stack.)

@@ -34,7 +34,7 @@ use super::body::Body;
 use super::closed::{Found, is_enough};
 use super::fine::Level;
 use crate::bounds::Bracket;
-use crate::math::{TwoWords, Vector, magnitude, norm, unit};
+use crate::math::{Accumulator, TwoWords, Vector, magnitude, norm, unit};
 use crate::query::Options;
 use crate::query::answer::Outcome;
 use crate::scalar::Real;
@@ -157,27 +157,27 @@ impl<T: Real> Zonotope<T> {
                 lower = lower.at_most(Level::new(n, [T::zero(); 2], self.error(&n.high, &blur)).lower(&[point]));
                 // (Along the rounded vector, mostly the same point is farthest.)
                 let rounded = unit(&n.high);
-                let height = self.not_above(&rounded, T::zero(), Some((&coordinates, &point)));
+                let height = self.not_above(&rounded, [T::zero(); 2], Some((&coordinates, &point)));
                 if height < upper {
                     (upper, normal) = (height, rounded);
                 }
             }
         }
         if upper >= T::HUGE {
-            upper = self.not_above(&normal, T::zero(), None);
+            upper = self.not_above(&normal, [T::zero(); 2], None);
         }
         (Bracket { lower: (lower - moved).at_most(upper), upper }, normal)
     }
 
-    /// An upper bound of d that a unit vector proves, for a ball term like this. A point of M may be known that is farthest along nearly the same vector.
-    fn not_above(&self, n: &Vector<T, 3>, ball: T, known: Option<(&[T; EDGES], &TwoWords<T, 3>)>) -> T {
+    /// An upper bound of d that a unit vector proves, for ball terms like these. A point of M may be known that is farthest along nearly the same vector.
+    fn not_above(&self, n: &Vector<T, 3>, balls: [T; 2], known: Option<(&[T; EDGES], &TwoWords<T, 3>)>) -> T {
         let exact = TwoWords::from(*n);
         let coordinates = self.farthest(&exact);
         let point = match known {
             Some((same, point)) if *same == coordinates => *point,
             _ => self.place(&coordinates),
         };
-        Level::new(exact, [ball, T::zero()], self.error(n, &Vector::zeros()) + self.ball_error).upper(&point)
+        Level::new(exact, balls, self.error(n, &Vector::zeros()) + self.ball_error).upper(&point)
     }
 
     /// The bracket of boxes that overlap with ball terms, from that of their cores.
@@ -210,7 +210,7 @@ impl<T: Real> Zonotope<T> {
             return self.found(Bracket { lower: self.not_below(&start), upper }, normal, &start);
         }
         let point = nearest(self, start, &Vector::zeros(), true);
-        let seen = self.not_above(&point.toward, self.ball, None);
+        let seen = self.not_above(&point.toward, self.balls, None);
         let (upper, normal) = if seen < upper { (seen, point.toward) } else { (upper, normal) };
         let bracket = Bracket { lower: self.not_below(&point.coordinates), upper };
         self.found(self.as_asked(bracket, options), normal, &point.coordinates)
@@ -228,12 +228,16 @@ impl<T: Real> Zonotope<T> {
     fn not_below(&self, coordinates: &[T; EDGES]) -> T {
         let point = self.place(coordinates);
         let (root, slip) = length(&point);
-        let distance = (root - self.ball) + slip;
+        let mut sum = Accumulator::new(root);
+        for term in [-self.balls[0], -self.balls[1], slip] {
+            sum.add(term);
+        }
+        let distance = sum.value();
         // |x + e| <= |x| + e.x / |x| + |e|^2 / (2 |x|), and not above |x| + |e|.
         let whole = self.whole_error();
         let along = self.error(&unit(&point.high), &Vector::zeros()) + whole * (whole / root.at_least(T::TINY));
         let error = along.at_most(whole) + self.ball_error;
-        -(distance + error + (distance.abs() + slip.abs()) * (T::count(4) * T::ROUNDOFF))
+        -(distance + error + distance.abs() * (T::count(8) * T::ROUNDOFF))
     }
 
     fn found(&self, bracket: Bracket<T>, normal: Vector<T, 3>, coordinates: &[T; EDGES]) -> Found<T, 3> {

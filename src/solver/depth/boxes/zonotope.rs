@@ -4,7 +4,7 @@ use crate::math::{Accumulator, TwoWords, Vector, finite, largest, magnitude, nor
 use crate::scalar::Real;
 use crate::solver::depth::body::{Body, skew};
 use crate::support::Failure;
-use crate::support::failure::NOT_FINITE;
+use crate::support::failure::{NOT_FINITE, TOO_LARGE};
 use crate::support::range::signed;
 
 /// The edges of two boxes.
@@ -50,7 +50,7 @@ impl<T: Real> Zonotope<T> {
         for (to, &w) in half.iter_mut().zip(corner_a.iter().chain(corner_b.iter())) {
             *to = magnitude(w);
         }
-        let balls = [a.ball + a.inflation, b.ball + b.inflation];
+        let balls = [a.shape.radius(), b.shape.radius()];
         let ball = balls[0] + balls[1];
         let places = [a.translation, b.translation];
         let sum = |x: &Vector<T, 3>| x.iter().fold(T::zero(), |sum, &x| sum + magnitude(x));
@@ -58,6 +58,11 @@ impl<T: Real> Zonotope<T> {
         let known = edges.finite() && ball.finite() && balls.iter().all(|&r| r >= T::zero());
         if !(known && places.iter().all(finite)) {
             return Err(Failure(NOT_FINITE));
+        }
+        // (So far from where sums overflow that no rounding mode hides it.)
+        let size = (edges + sum(&(places[0] - places[1]))) * T::of(1.01);
+        if !(size + ball + sum(&places[0]) + sum(&places[1]) < T::HUGE * T::of(0.25)) {
+            return Err(Failure(TOO_LARGE));
         }
         let rolled = |body: &Body<'_, T>| match body.shape.rolling_radius() {
             rolling if rolling > T::zero() => {
@@ -67,16 +72,7 @@ impl<T: Real> Zonotope<T> {
         };
         let places_sizes = places[0].abs() + places[1].abs();
         let sizes = along.iter().zip(&half).fold(places_sizes, |sizes, (g, &w)| sizes + g.abs() * w);
-        Ok(Zonotope {
-            along,
-            half,
-            places,
-            size: (edges + sum(&(places[0] - places[1]))) * T::of(1.01),
-            sizes,
-            balls,
-            ball,
-            ball_error: rolled(a) + rolled(b),
-        })
+        Ok(Zonotope { along, half, places, size, sizes, balls, ball, ball_error: rolled(a) + rolled(b) })
     }
 
     /// c
