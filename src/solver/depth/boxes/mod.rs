@@ -84,6 +84,12 @@ impl<T: Real> Zonotope<T> {
     fn depth(&self, options: &Options<'_, T, 3>) -> Found<T, 3> {
         let axes = self.axes();
         let most = axes.most;
+        if options.interrupt.is_some_and(|interrupt| interrupt()) {
+            let start = self.farthest(&TwoWords::from(axes.normal));
+            let upper = self.with_balls(&Bracket { lower: most, upper: most }).upper;
+            let found = self.found(Bracket { lower: self.not_below(&start), upper }, axes.normal, &start);
+            return Found { outcome: Some(Outcome::Interrupted), ..found };
+        }
         if axes.least > T::zero() {
             let bracket = self.with_balls(&Bracket { lower: axes.least, upper: most });
             if is_enough(&bracket, options) {
@@ -197,7 +203,7 @@ impl<T: Real> Zonotope<T> {
     ) -> Found<T, 3> {
         let start = self.farthest(&TwoWords::from(normal));
         let point = nearest(self, start, &(normal * height), false);
-        self.found(self.as_asked(bracket, options), normal, &point.coordinates)
+        self.found(self.as_asked(bracket, &normal, options), normal, &point.coordinates)
     }
 
     /// The answer for boxes whose cores do not certainly overlap, seen along this unit vector, which proves this upper bound for the cores.
@@ -213,13 +219,13 @@ impl<T: Real> Zonotope<T> {
         let seen = self.not_above(&point.toward, self.balls, None);
         let (upper, normal) = if seen < upper { (seen, point.toward) } else { (upper, normal) };
         let bracket = Bracket { lower: self.not_below(&point.coordinates), upper };
-        self.found(self.as_asked(bracket, options), normal, &point.coordinates)
+        self.found(self.as_asked(bracket, &normal, options), normal, &point.coordinates)
     }
 
     /// No more is claimed than was asked for. Boxes are described by rounded numbers, and a bracket that contains what these stand for is worth more than
     /// one that is narrower.
-    fn as_asked(&self, bracket: Bracket<T>, options: &Options<'_, T, 3>) -> Bracket<T> {
-        let rounding = self.size * (T::count(2) * T::ROUNDOFF);
+    fn as_asked(&self, bracket: Bracket<T>, normal: &Vector<T, 3>, options: &Options<'_, T, 3>) -> Bracket<T> {
+        let rounding = self.size_along(normal) * (T::count(2) * T::ROUNDOFF);
         let wider = Bracket { lower: bracket.lower - rounding, upper: bracket.upper + rounding };
         if is_enough(&wider, options) { wider } else { bracket }
     }

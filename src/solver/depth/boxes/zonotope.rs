@@ -140,9 +140,14 @@ impl<T: Real> Zonotope<T> {
         sum
     }
 
+    /// Bounds the numbers that a height along a unit vector is made of.
+    pub fn size_along(&self, n: &Vector<T, 3>) -> T {
+        n.abs().dot(&self.sizes) + self.ball
+    }
+
     /// E: of heights in two words along a unit vector that is off by no more than 2^12 u^2 `blur`.
     pub fn error(&self, n: &Vector<T, 3>, blur: &Vector<T, 3>) -> T {
-        ((n.abs() + blur).dot(&self.sizes) + self.ball) * (T::count(1 << 14) * T::ROUNDOFF * T::ROUNDOFF)
+        self.size_along(&(n.abs() + blur)) * (T::count(1 << 14) * T::ROUNDOFF * T::ROUNDOFF)
             + T::count(1 << 10) * T::TINY
     }
 
