@@ -101,6 +101,19 @@ static void Q(pairs)(qdist_solver *solver) {
     depth = Q(ask)(solver, &a, &b, NULL);
     CHECK(Q(brackets)(depth.lower, depth.upper, 0.25) && fabs(depth.normal[1] - 1) < 1e-5);
     CHECK(Q(consistent)(&depth, 0.25) && depth.dimension == 3 && depth.facets_used == 0 && depth.support_calls > 0);
+    /* Two margins, whose sum is not a number of the scalar: each counts by itself. */
+    {
+        const Q(qdist_box) unit_cube = {{1, 1, 1}};
+        Q(body) rounded[2];
+        int i;
+        for (i = 0; i < 2; ++i) {
+            CHECK(Q(qdist_body_box)(&rounded[i], &unit_cube) == QDIST_OK);
+            rounded[i].set.radius = i ? (REAL)0.2 : (REAL)0.1, rounded[i].translation[0] = i ? (REAL)2.3 : 0;
+        }
+        const double truth = sizeof(REAL) == 8 ? 0x1.cp-53 : 2 + (double)(REAL)0.1 + (double)(REAL)0.2 - (double)(REAL)2.3;
+        const Q(depth) near = Q(ask)(solver, &rounded[0], &rounded[1], NULL);
+        CHECK(near.lower <= truth && truth <= near.upper && fabs(near.normal[0] - 1) < 1e-5);
+    }
     /* An eighth of a turn about z: half a diagonal, sqrt(1/2), sticks out. */
     b.rotation[0] = b.rotation[4] = (REAL)sqrt(0.5);
     b.rotation[1] = -(REAL)sqrt(0.5);

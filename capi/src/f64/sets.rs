@@ -83,7 +83,7 @@ pub struct qdist_body_f64 {
     /// NULL; what qdist_body_half_space puts here answers in place of the support function. Not for functions of your own.
     pub unbounded: qdist_unbounded,
     /// How depth is found, as the function that has made the body says: boxes by their axes, cylinders and cones by arcs of minimisers around theirs, your
-    /// own sets by expansion. A program does without the plans of shapes that it does not make.
+    /// own sets by expansion. (Boxes by what their function wrote: what is changed in their `set` afterwards, but for its radius, counts only beside other shapes.) A program does without the plans of shapes that it does not make.
     pub route: qdist_route,
     /// NULL; or the support function in twice the precision: shallow contact of such bodies is measured to the last digits. The body functions of all
     /// shapes, points and hulls put it here. Called with set.user.

@@ -148,7 +148,7 @@ impl<T: Real> Zonotope<T> {
             let (n, blur) = match self.normal_in_two_words(i, j) {
                 Normal::None => continue,
                 Normal::Unknown => {
-                    moved = self.whole_error();
+                    moved = self.whole_error(); // (of all such pairs together)
                     continue;
                 }
                 Normal::Known(n, blur) => (n, blur),
@@ -189,7 +189,7 @@ impl<T: Real> Zonotope<T> {
     /// The bracket of boxes that overlap with ball terms, from that of their cores.
     fn with_balls(&self, core: &Bracket<T>) -> Bracket<T> {
         // What the ball terms are off, and the rounding of adding them.
-        let blur = |x: T| self.ball_error + (x.abs() + self.ball) * (T::count(4) * T::ROUNDOFF);
+        let blur = |x: T| self.ball_error + (x.abs() + self.ball) * (T::count(8) * T::ROUNDOFF);
         Bracket { lower: core.lower + self.ball - blur(core.lower), upper: core.upper + self.ball + blur(core.upper) }
     }
 

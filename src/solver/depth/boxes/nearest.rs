@@ -51,6 +51,9 @@ pub(super) fn nearest<T: Real>(
         };
         let basis = span(m, &free);
         let steps = solve(&basis, &x);
+        if !steps.iter().all(|step| step.finite()) {
+            break;
+        }
         if let Some(edge) = step(m, &basis, &steps, &mut s) {
             free.retain(|&other| other != edge);
             continue;

@@ -70,8 +70,8 @@ impl<T: Real> Zonotope<T> {
             }
             _ => T::zero(),
         };
-        let places_sizes = places[0].abs() + places[1].abs();
-        let sizes = along.iter().zip(&half).fold(places_sizes, |sizes, (g, &w)| sizes + g.abs() * w);
+        let apart = (places[0] - places[1]).abs();
+        let sizes = along.iter().zip(&half).fold(apart, |sizes, (g, &w)| sizes + g.abs() * w);
         Ok(Zonotope { along, half, places, size, sizes, balls, ball, ball_error: rolled(a) + rolled(b) })
     }
 
@@ -111,10 +111,12 @@ impl<T: Real> Zonotope<T> {
     #[inline(never)]
     pub fn place(&self, coordinates: &[T; EDGES]) -> TwoWords<T, 3> {
         TwoWords::of(|i| {
-            let mut sum = self.of_a(coordinates, i);
-            let of_b = self.of_b(coordinates, i).parts();
-            sum.add(-of_b.0);
-            sum.add(-of_b.1);
+            // (The places first: what they have in common is gone, exactly.)
+            let mut sum = Accumulator::new(self.places[0][i]);
+            sum.add(-self.places[1][i]);
+            for (g, &s) in self.along.iter().zip(coordinates) {
+                sum.add_product(g[i], s);
+            }
             sum
         })
     }
